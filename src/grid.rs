@@ -8,9 +8,7 @@ use crate::framebuffer::{self, ResolutionError};
 use packed::Clusters;
 use std::fmt;
 use std::hash::{Hash, Hasher};
-#[cfg(feature = "backend")]
-use std::ops::Range;
-use std::ops::{Deref, DerefMut};
+use std::ops::{Deref, DerefMut, Range};
 use std::slice;
 use std::sync::Arc;
 
@@ -355,6 +353,11 @@ impl Grid {
     pub(crate) fn set_packed(&mut self, at: usize, cell: PackedCell) {
         debug_assert!(!cell.is_cluster(), "a cluster belongs to its grid");
         self.cells[at] = cell;
+    }
+
+    /// Copies a range of cells to another place, from the index `to` on.
+    pub(crate) fn copy_within(&mut self, cells: Range<usize>, to: usize) {
+        self.cells.copy_within(cells, to);
     }
 
     /// Returns the cell at an index, counted row by row from the top.

@@ -1,7 +1,9 @@
 //! The cells in which the wanted grid's picture differs from the shown grid, and the wanted text.
 
-use super::halves::{Halves, picture_halves, squared_difference};
+use super::halves::{Halves, NO_PICTURE, PictureHalves, squared_difference};
 use crate::grid::{Grid, PackedInk};
+use crate::lanes::{Lanes, SimdKernel};
+use crate::simd::dispatch;
 
 /// The picture cells that differ, in reading order, and the cells of the wanted text.
 #[derive(Default)]
@@ -9,7 +11,7 @@ pub(super) struct Differences {
     /// The index of each cell in the grid.
     pub(super) places: Vec<u32>,
     pub(super) wanted: Vec<Halves>,
-    /// The halves that the terminal shows; [`UNKNOWN`] if the cell shows text or is unknown.
+    /// The halves that the terminal shows; [`NO_PICTURE`] if the cell shows text or is unknown.
     pub(super) shown: Vec<Halves>,
     /// The squared differences of both halves; `u32::MAX` for unknown ones.
     pub(super) squares: Vec<[u32; 2]>,
@@ -22,43 +24,29 @@ pub(super) struct Differences {
 /// The squared differences of the halves of a cell that the frame itself has vacated.
 pub(super) const VACATED: [u32; 2] = [u32::MAX - 1; 2];
 
-/// The shown halves of a cell that shows text or is unknown.
-pub(super) const UNKNOWN: Halves = [PackedInk::DEFAULT; 2];
-
 impl Differences {
-    /// Lists the differences of two grids of equal size.
-    pub(super) fn find(&mut self, shown: &Grid, wanted: &Grid) {
-        let Self { places, wanted: wanted_halves, shown: shown_halves, squares, text, appearing } = self;
-        for list in [&mut *places, text] {
-            list.clear();
+    /// Lists the differences of two pictures of equal size.
+    pub(super) fn find(&mut self, halves: &PictureHalves) {
+        let Self { places, wanted, shown, squares, text, appearing } = self;
+        let count = halves.wanted.len();
+        text.clear();
+        // As many again as a block has cells, so that whole blocks can be written.
+        places.resize(count + BLOCK, 0);
+        wanted.resize(count + BLOCK, NO_PICTURE);
+        shown.resize(count + BLOCK, NO_PICTURE);
+        let mut found = 0;
+        for (block, cells) in halves.wanted.chunks(BLOCK).zip(halves.shown.chunks(BLOCK)).enumerate() {
+            let lists = (&mut places[found..][..BLOCK], &mut wanted[found..][..BLOCK], &mut shown[found..][..BLOCK]);
+            found += find_in_block(BLOCK * block, cells, lists, text);
         }
-        for list in [&mut *wanted_halves, shown_halves] {
-            list.clear();
-        }
-        for (at, (&shown, &wanted)) in (0..).zip(shown.packed().iter().zip(wanted.packed())) {
-            let Some(halves) = picture_halves(wanted) else {
-                text.push(at);
-                continue;
-            };
-            if shown == wanted {
-                continue;
-            }
-            let halves_shown = picture_halves(shown).unwrap_or(UNKNOWN);
-            if halves_shown != halves {
-                places.push(at);
-                wanted_halves.push(halves);
-                shown_halves.push(halves_shown);
-            }
-        }
-        squares.clear();
-        squares.resize(places.len(), [0; 2]);
-        // All halves in one flat list, so that the compiler vectorises the loop.
-        let halves = shown_halves.as_flattened().iter().zip(wanted_halves.as_flattened());
-        for (square, (&shown, &wanted)) in squares.as_flattened_mut().iter_mut().zip(halves) {
-            *square = squared_difference(shown, wanted);
-        }
+        places.truncate(found);
+        wanted.truncate(found);
+        shown.truncate(found);
+        squares.resize(found, [0; 2]);
+        let lists = [&*shown, &*wanted].map(|halves| halves.as_flattened());
+        dispatch(PutSquares { lists, squares: squares.as_flattened_mut() });
         *appearing = 0;
-        for (squares, _) in squares.iter_mut().zip(&*shown_halves).filter(|&(_, &shown)| shown == UNKNOWN) {
+        for (squares, _) in squares.iter_mut().zip(&*shown).filter(|&(_, &shown)| shown == NO_PICTURE) {
             *squares = [u32::MAX; 2];
             *appearing += 1;
         }
@@ -91,6 +79,52 @@ impl Differences {
     pub(super) fn copy_text(&self, wanted: &Grid, grid: &mut Grid) {
         for &at in &self.text {
             grid.copy_cell(at as usize, wanted, wanted.packed()[at as usize]);
+        }
+    }
+}
+
+/// The number of cells that are compared as a block.
+const BLOCK: usize = 8;
+
+/// Writes the differences of a block of cells, `(wanted, shown)`, to the start of the lists.
+///
+/// Returns their number.
+// Each cell is written behind the differences so far, and stays there if it is one: without a branch that depends on
+// the picture.
+fn find_in_block(
+    start: usize,
+    (of_wanted, of_shown): (&[Halves], &[Halves]),
+    (places, wanted, shown): (&mut [u32], &mut [Halves], &mut [Halves]),
+    text: &mut Vec<u32>,
+) -> usize {
+    let mut found = 0;
+    for (at, (&of_wanted, &of_shown)) in (start as u32..).zip(of_wanted.iter().zip(of_shown)) {
+        if of_wanted == NO_PICTURE {
+            text.push(at);
+            continue;
+        }
+        let next = found % BLOCK;
+        (places[next], wanted[next], shown[next]) = (at, of_wanted, of_shown);
+        found += usize::from(of_shown != of_wanted);
+    }
+    found
+}
+
+/// Sets the squared differences of two lists of colours.
+struct PutSquares<'a> {
+    lists: [&'a [PackedInk]; 2],
+    squares: &'a mut [u32],
+}
+
+impl SimdKernel for PutSquares<'_> {
+    type Output = ();
+
+    // A plain loop, which the compiler turns into instructions of the widest set.
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let [a, b] = self.lists;
+        for (square, (&a, &b)) in self.squares.iter_mut().zip(a.iter().zip(b)) {
+            *square = squared_difference(a, b);
         }
     }
 }

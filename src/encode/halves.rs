@@ -1,6 +1,8 @@
 //! The colours of the two halves of a picture cell, and the tolerance of their differences.
 
-use crate::grid::{PackedCell, PackedInk};
+use crate::grid::{Grid, PackedCell, PackedInk};
+use crate::lanes::{Lanes, SimdKernel};
+use crate::simd::dispatch;
 
 /// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
@@ -36,13 +38,56 @@ pub(super) fn squared_differences(a: Halves, b: Halves) -> [u32; 2] {
 #[inline]
 pub(super) fn picture_halves(cell: PackedCell) -> Option<Halves> {
     let PackedCell { fg, bg, .. } = cell;
-    let (halves, is_picture) = match cell.glyph_and_attributes() {
-        SPACE => ([bg, bg], fg == PackedInk::DEFAULT),
-        LOWER_HALF => ([bg, fg], fg.is_rgb()),
-        UPPER_HALF => ([fg, bg], fg.is_rgb()),
-        _ => return None,
-    };
-    (is_picture && bg.is_rgb()).then_some(halves)
+    let code = cell.glyph_and_attributes();
+    let (is_space, is_lower, is_upper) = (code == SPACE, code == LOWER_HALF, code == UPPER_HALF);
+    // Without branches, which pictures of spaces and half blocks would make hard to predict.
+    let has_inks = bg.is_rgb() & if is_space { fg == PackedInk::DEFAULT } else { fg.is_rgb() };
+    let halves = [if is_upper { fg } else { bg }, if is_lower { fg } else { bg }];
+    ((is_space | is_lower | is_upper) & has_inks).then_some(halves)
+}
+
+/// The halves of a cell that shows text or is unknown.
+pub(super) const NO_PICTURE: Halves = [PackedInk::DEFAULT; 2];
+
+/// The halves of all cells of the shown and the wanted grid, in reading order.
+///
+/// Those of cells that are no picture are [`NO_PICTURE`].
+#[derive(Default)]
+pub(super) struct PictureHalves {
+    pub(super) shown: Vec<Halves>,
+    pub(super) wanted: Vec<Halves>,
+}
+
+impl PictureHalves {
+    pub(super) fn read_shown(&mut self, shown: &Grid) {
+        read(shown, &mut self.shown);
+    }
+
+    pub(super) fn read_wanted(&mut self, wanted: &Grid) {
+        read(wanted, &mut self.wanted);
+    }
+}
+
+fn read(grid: &Grid, halves: &mut Vec<Halves>) {
+    halves.resize(grid.packed().len(), NO_PICTURE);
+    dispatch(ReadHalves { cells: grid.packed(), halves });
+}
+
+/// Reads the halves of cells.
+struct ReadHalves<'a> {
+    cells: &'a [PackedCell],
+    halves: &'a mut [Halves],
+}
+
+impl SimdKernel for ReadHalves<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        for (&cell, halves) in self.cells.iter().zip(self.halves) {
+            *halves = picture_halves(cell).unwrap_or(NO_PICTURE);
+        }
+    }
 }
 
 /// [Codes](PackedCell::code) of cells without attributes: the numbers of the characters.

@@ -15,13 +15,18 @@
 //! of picture cells only. What is to the right of a window, or below it, moves away and back within the frame, so
 //! frames with shifts have to be enclosed in synchronized output.
 
-use super::moves::{CellPosition, KnownCursor, Move, cheapest_move, write_sequence};
+use super::halves::{NO_PICTURE, PictureHalves};
+use super::moves::KnownCursor;
 use crate::capabilities::Shifts;
 use crate::grid::{Grid, PackedCell, Size};
-use planes::{Planes, put_errors};
+use crate::lanes::{F32x8, LANES};
+use crate::simd::dispatch;
+use operations::{write_column_shift, write_row_shift};
+use planes::{Planes, PutRowErrors, PutShiftedErrors};
 use std::ops::Range;
-use windows::{Places, Prices, Window, best_window};
+use windows::{Distances, MOST_DISTANCE, PlaceErrors, Prices, Window};
 
+mod operations;
 mod planes;
 mod windows;
 
@@ -58,8 +63,13 @@ impl ShiftTerms {
     }
 
     /// Returns the price of a number of bytes, as the error that they have to remove.
-    fn price(&self, bytes: usize) -> i64 {
-        (bytes.cast_signed() as i64 * i64::from(self.limit) / i64::from(self.bytes_per_cell)).max(1)
+    fn price(&self, bytes: usize) -> f32 {
+        (bytes * usize::from(self.limit) / self.bytes_per_cell as usize).max(1) as f32
+    }
+
+    /// Returns the greatest error of a cell.
+    fn most(&self) -> f32 {
+        f32::from(self.limit)
     }
 
     /// Returns the number of bytes of a shift: its operations, and writing the cells that it
@@ -109,11 +119,10 @@ pub(super) struct ShiftMemory {
     pub(super) vacated: Vec<u32>,
     shown: Planes,
     wanted: Planes,
-    stay: Vec<u16>,
-    shifted: Vec<u16>,
-    /// The sum of the errors of all places before each place, if nothing is shifted.
-    sums: Vec<i64>,
-    shifted_sums: Vec<i64>,
+    /// The errors of the rows of the screen, and then those of the cells of a row.
+    errors: PlaceErrors,
+    /// The errors of the cells of a row that comes from another one.
+    of_cells: Vec<F32x8>,
     chosen: Vec<RowShift>,
 }
 
@@ -135,32 +144,34 @@ impl ShiftMemory {
     /// Shifts what the terminal shows towards what is wanted, where that is the cheaper way:
     /// appends the operations, and updates `shown`.
     ///
+    /// `halves` are those of `shown`, which are updated too, and of the wanted grid.
+    ///
     /// Returns whether anything has been shifted; `before` is then a copy of what was shown.
     pub(super) fn shift(
         &mut self,
         [shown, before]: [&mut Grid; 2],
-        wanted: &Grid,
+        halves: &mut PictureHalves,
         (shifts, terms): (Shifts, ShiftTerms),
         bytes: &mut Vec<u8>,
     ) -> bool {
         self.vacated.clear();
         let lens = OperationLens::of(shifts);
-        if shifts == Shifts::Off || terms.max_bytes < terms.bytes(lens.full_row, 1) || shown.packed() == wanted.packed()
-        {
+        if shifts == Shifts::Off || terms.max_bytes < terms.bytes(lens.full_row, 1) || halves.shown == halves.wanted {
             return false;
         }
-        self.shown.fill(shown);
-        self.wanted.fill(wanted);
+        let size = shown.size();
+        self.shown.fill(&halves.shown, size);
+        self.wanted.fill(&halves.wanted, size);
         let mut left = terms.max_bytes;
-        let rows = self.best_rows(terms, lens, shown.size());
+        let rows = self.best_rows(terms, lens, size);
         if let Some((window, taken)) = rows {
             before.clone_from(shown);
             left -= taken;
-            write_row_shift(window, shown.size(), bytes);
-            let columns = usize::from(shown.size().columns);
+            write_row_shift(window, size, bytes);
+            let columns = usize::from(size.columns);
             let cells = window.start * columns..window.end * columns;
-            shift_cells(shown, cells, window.by * columns.cast_signed(), &mut self.vacated);
-            self.shown.fill(shown);
+            self.vacate(shown, halves, cells, window.by * columns.cast_signed());
+            self.shown.fill(&halves.shown, size);
         }
         self.choose_columns(terms, lens, left, shown);
         if self.chosen.is_empty() {
@@ -169,59 +180,79 @@ impl ShiftMemory {
         if rows.is_none() {
             before.clone_from(shown);
         }
-        let (size, mut cursor) = (shown.size(), KnownCursor::Unknown);
-        for &RowShift { row, window, .. } in &self.chosen {
+        let mut cursor = KnownCursor::Unknown;
+        for at in 0..self.chosen.len() {
+            let RowShift { row, window, .. } = self.chosen[at];
             write_column_shift(row, window, size, cursor, bytes);
             cursor = KnownCursor::InRow(row as u16);
             let start = row * usize::from(size.columns);
-            shift_cells(shown, start + window.start..start + window.end, window.by, &mut self.vacated);
+            self.vacate(shown, halves, start + window.start..start + window.end, window.by);
         }
         self.vacated.sort_unstable();
         true
     }
 
+    /// Moves a range of cells of the shown grid, and their halves, by `by` cells towards its start,
+    /// or if negative towards its end. Lists the vacated cells, which are unknown.
+    fn vacate(&mut self, shown: &mut Grid, halves: &mut PictureHalves, cells: Range<usize>, by: isize) {
+        let Range { start, end } = cells;
+        let distance = by.unsigned_abs();
+        let (moved, to, vacated) = if by > 0 {
+            (start + distance..end, start, end - distance..end)
+        } else {
+            (start..end - distance, start + distance, start..start + distance)
+        };
+        shown.copy_within(moved.clone(), to);
+        halves.shown.copy_within(moved, to);
+        halves.shown[vacated.clone()].fill(NO_PICTURE);
+        for at in vacated {
+            shown.set_packed(at, PackedCell::FOREIGN);
+            self.vacated.push(at as u32);
+        }
+    }
+
     /// Returns the best window of rows, and the number of bytes that it takes.
     fn best_rows(&mut self, terms: ShiftTerms, lens: OperationLens, size: Size) -> Option<(Window, usize)> {
         let (columns, rows) = (usize::from(size.columns), usize::from(size.rows));
-        let prices = terms.prices(lens);
-        self.stay.resize(columns, 0);
-        self.shifted.resize(columns, 0);
-        self.sums.clear();
-        self.sums.push(0);
+        let taken = |distance: usize| terms.bytes(lens.two, distance * columns);
+        let farthest = (1..=FARTHEST_ROW).rev().find(|&distance| taken(distance) <= terms.max_bytes)?;
+        let distances = Distances { farthest };
+        self.errors.distances = distances;
+        self.errors.stay.clear();
+        self.errors.stay.resize(rows.div_ceil(LANES), F32x8::ZERO);
         for row in 0..rows {
-            let at = row * columns;
-            put_errors([&self.shown, &self.wanted], [at, at], terms.limit, &mut self.stay);
-            self.sums.push(self.sums[row] + sum(&self.stay));
+            self.errors.stay[row / LANES].0[row % LANES] = self.row_error([row, row], terms);
         }
+        self.errors.sum_up(rows);
+        let prices = terms.prices(lens);
         // Nothing is gained beyond the errors that there are.
-        if self.sums[rows] <= prices.one {
+        if self.errors.staying(0..rows) <= prices.one {
             return None;
         }
-        let Self { shown, wanted, shifted, sums, shifted_sums, .. } = self;
-        let mut best: Option<(Window, usize)> = None;
-        for by in [1, -1, 2, -2_isize] {
-            let taken = terms.bytes(lens.two, by.unsigned_abs() * columns);
-            if taken > terms.max_bytes {
-                continue;
-            }
-            for segment in segments(0..rows, |row| shown.is_picture_row(row) && wanted.is_picture_row(row)) {
-                let most = i64::from(terms.limit) * columns.cast_signed() as i64;
-                let places = Places { sums: &sums[segment.start..=segment.end], most };
-                shifted_sums.clear();
-                for row in segment.clone() {
-                    let from = row.checked_add_signed(by).filter(|from| segment.contains(from));
-                    shifted_sums.push(from.map_or(0, |from| {
-                        put_errors([&*shown, &*wanted], [from * columns, row * columns], terms.limit, shifted);
-                        sum(shifted)
-                    }));
-                }
-                let window = best_window(&places, |row| shifted_sums[row], by, prices, segment.end == rows);
-                if let Some(window) = window.filter(|window| best.is_none_or(|(best, _)| window.gain > best.gain)) {
-                    best = Some((window.moved_by(segment.start), taken));
-                }
+        let groups = distances.groups().len();
+        self.errors.shifted.clear();
+        self.errors.shifted.resize(rows * groups, F32x8::ZERO);
+        for row in 0..rows {
+            for by in (1..=farthest.cast_signed()).flat_map(|by| [by, -by]) {
+                let Some(from) = row.checked_add_signed(by).filter(|&from| from < rows) else { continue };
+                let (group, lane) = distances.slot(by);
+                self.errors.shifted[row * groups + group].0[lane] = self.row_error([from, row], terms);
             }
         }
-        best
+        let Self { shown, wanted, errors, .. } = self;
+        let most = terms.most() * columns as f32;
+        let is_picture = |row| shown.is_picture_row(row) && wanted.is_picture_row(row);
+        let best = best_of_segments(segments(0..rows, is_picture), |segment| {
+            let is_last = segment.end == rows;
+            errors.best_window(segment, most, prices, is_last, None)
+        })?;
+        Some((best, taken(best.by.unsigned_abs())))
+    }
+
+    /// Returns the error of a row of the wanted picture that comes from a row of the shown one.
+    fn row_error(&mut self, [from, to]: [usize; 2], terms: ShiftTerms) -> f32 {
+        let Self { shown, wanted, of_cells, .. } = self;
+        dispatch(PutRowErrors { rows: [(shown, from), (wanted, to)], limit: terms.most(), errors: of_cells })
     }
 
     /// Lists the best windows of the rows: those with the largest gain for their bytes, up to
@@ -236,6 +267,10 @@ impl ShiftMemory {
                 continue;
             }
             let columns = columns.into();
+            if self.put_staying_errors(row, columns, terms) <= terms.price(lens.full_row.min(lens.one)) {
+                continue;
+            }
+            self.put_shifted_errors(row, columns, terms);
             let windows = self.windows_of_row(row, columns, terms, lens);
             let full = self.full_row(row, &windows, columns, terms, lens);
             let windows = if full.is_some() { [full, None, None] } else { windows };
@@ -244,7 +279,7 @@ impl ShiftMemory {
                 self.chosen.push(RowShift { row, window, bytes });
             }
         }
-        let per_byte = |shift: &RowShift| shift.window.gain as f64 / shift.bytes as f64;
+        let per_byte = |shift: &RowShift| f64::from(shift.window.gain) / shift.bytes as f64;
         self.chosen.sort_unstable_by(|a, b| per_byte(b).total_cmp(&per_byte(a)).then(a.place().cmp(&b.place())));
         let mut left = max_bytes;
         self.chosen.retain(|shift| {
@@ -257,15 +292,43 @@ impl ShiftMemory {
         self.chosen.sort_unstable_by_key(RowShift::place);
     }
 
+    /// Sets the errors of the cells of a row if nothing is shifted, and returns their sum.
+    fn put_staying_errors(&mut self, row: usize, columns: usize, terms: ShiftTerms) -> f32 {
+        let Self { shown, wanted, errors, .. } = self;
+        let rows = [(&*shown, row), (&*wanted, row)];
+        let sum = dispatch(PutRowErrors { rows, limit: terms.most(), errors: &mut errors.stay });
+        errors.sum_up(columns);
+        sum
+    }
+
+    /// Sets the errors of the cells of a row that come from other columns.
+    fn put_shifted_errors(&mut self, row: usize, columns: usize, terms: ShiftTerms) {
+        let Self { shown, wanted, errors, .. } = self;
+        let distances = Distances { farthest: farthest(columns) };
+        errors.distances = distances;
+        let errors = &mut errors.shifted;
+        dispatch(PutShiftedErrors { shown, wanted, row, limit: terms.most(), distances, errors });
+    }
+
     /// Returns the best window of a row, and the best one on each side of it, from left to right.
     fn windows_of_row(
-        &mut self,
+        &self,
         row: usize,
         columns: usize,
         terms: ShiftTerms,
         lens: OperationLens,
     ) -> [Option<Window>; 3] {
-        let mut best_of = |part: Range<usize>| self.best_columns(row, part, columns, terms, lens);
+        let Self { shown, wanted, errors, .. } = self;
+        let (prices, start) = (terms.prices(lens), row * columns);
+        let is_picture = |column| shown.is_picture(start + column) && wanted.is_picture(start + column);
+        // Where several distances gain the same, most rows move as the one above.
+        let likely = self.distance_of_row_above(row);
+        let best_of = |part: Range<usize>| {
+            best_of_segments(segments(part, is_picture), |segment| {
+                let is_last = segment.end == columns;
+                errors.best_window(segment, terms.most(), prices, is_last, likely)
+            })
+        };
         let Some(best) = best_of(0..columns) else { return [None; 3] };
         [best_of(0..best.start), Some(best), best_of(best.end..columns)]
     }
@@ -278,7 +341,7 @@ impl ShiftMemory {
     // elsewhere took up to 4 bytes more in each row: without full rows the PSNR is 0.5 dB lower at 200x60 with 1.0 kB a
     // frame, and 0.15 dB with 1.7 kB.
     fn full_row(
-        &mut self,
+        &self,
         row: usize,
         windows: &[Option<Window>; 3],
         columns: usize,
@@ -286,26 +349,21 @@ impl ShiftMemory {
         lens: OperationLens,
     ) -> Option<Window> {
         let above = self.distance_of_row_above(row);
-        let start = row * columns;
-        let Self { shown, wanted, stay, shifted, .. } = self;
+        let Self { shown, wanted, errors, .. } = self;
         if !shown.is_picture_row(row) || !wanted.is_picture_row(row) {
             return None;
         }
-        stay.resize(columns, 0);
-        put_errors([&*shown, &*wanted], [start, start], terms.limit, stay);
-        let stay = sum(stay);
+        let stay = errors.staying(0..columns);
         let bytes = |window: &Window| terms.bytes(lens.of_window(*window, columns), window.by.unsigned_abs());
         let windows = windows.iter().flatten();
-        let mut best_gain = windows.clone().map(|window| window.gain).sum::<i64>();
+        let mut best_gain = windows.clone().map(|window| window.gain).sum::<f32>();
         let mut fewest_bytes = windows.clone().map(bytes).sum::<usize>();
         let mut best = None;
         for by in windows.map(|window| window.by).chain(above) {
             let distance = by.unsigned_abs();
-            let (from, to) = if by > 0 { (distance, 0) } else { (0, distance) };
-            shifted.resize(columns - distance, 0);
-            put_errors([&*shown, &*wanted], [start + from, start + to], terms.limit, shifted);
-            let vacated = i64::from(terms.limit) * distance.cast_signed() as i64;
-            let gain = stay - sum(shifted) - vacated - terms.price(lens.full_row);
+            let filled = if by > 0 { 0..columns - distance } else { distance..columns };
+            let errors = errors.shifted_by(by, filled) + terms.most() * distance as f32;
+            let gain = stay - errors - terms.price(lens.full_row);
             let window = Window { start: 0, end: columns, by, gain };
             let bytes = bytes(&window);
             if gain > best_gain || gain == best_gain && bytes < fewest_bytes {
@@ -319,64 +377,15 @@ impl ShiftMemory {
     fn distance_of_row_above(&self, row: usize) -> Option<isize> {
         self.chosen.last().filter(|shift| shift.row + 1 == row).map(|shift| shift.window.by)
     }
-
-    /// Returns the best window in a part of a row.
-    fn best_columns(
-        &mut self,
-        row: usize,
-        part: Range<usize>,
-        columns: usize,
-        terms: ShiftTerms,
-        lens: OperationLens,
-    ) -> Option<Window> {
-        let prices = terms.prices(lens);
-        // Most rows move as the one above. With its distance tried first, `most_gain` rules out most others without a
-        // search.
-        let likely = self.distance_of_row_above(row);
-        let Self { shown, wanted, stay, shifted, sums, .. } = self;
-        let start = row * columns;
-        let mut best: Option<Window> = None;
-        for segment in segments(part, |column| shown.is_picture(start + column) && wanted.is_picture(start + column)) {
-            let (at, len) = (start + segment.start, segment.len());
-            stay.resize(len, 0);
-            put_errors([&*shown, &*wanted], [at, at], terms.limit, stay);
-            if sum(stay) <= prices.one {
-                continue;
-            }
-            sums.clear();
-            sums.push(0);
-            let mut sum_so_far = 0;
-            sums.extend(stay.iter().map(|&error| {
-                sum_so_far += i64::from(error);
-                sum_so_far
-            }));
-            let places = Places { sums, most: terms.limit.into() };
-            let farthest = farthest(columns).min(len - 1).cast_signed();
-            let likely = likely.filter(|by| by.unsigned_abs() < len);
-            let others = (1..=farthest).flat_map(|by| [by, -by]).filter(|&by| Some(by) != likely);
-            for by in likely.into_iter().chain(others) {
-                let (from, to) = if by > 0 { (by.unsigned_abs(), 0) } else { (0, by.unsigned_abs()) };
-                shifted.resize(len - by.unsigned_abs(), 0);
-                put_errors([&*shown, &*wanted], [at + from, at + to], terms.limit, shifted);
-                let least = best.map_or(0, |best| best.gain);
-                if most_gain(&stay[to..], shifted) <= least + prices.one {
-                    continue;
-                }
-                let error = |place: usize| i64::from(shifted[place - to]);
-                let window = best_window(&places, error, by, prices, segment.end == columns);
-                if let Some(window) = window.filter(|window| window.gain > least) {
-                    best = Some(window.moved_by(segment.start));
-                }
-            }
-        }
-        best
-    }
 }
+
+/// The greatest number of rows by which rows are shifted.
+const FARTHEST_ROW: usize = 2;
 
 /// Returns the greatest number of columns by which cells are shifted.
 // A turn of the camera moves the picture by a share of its width.
 fn farthest(columns: usize) -> usize {
-    (columns / 10).clamp(1, 16)
+    (columns / 10).clamp(1, MOST_DISTANCE)
 }
 
 /// Returns the maximal ranges of consecutive places that satisfy `is_good`.
@@ -389,88 +398,18 @@ fn segments(places: Range<usize>, mut is_good: impl FnMut(usize) -> bool) -> imp
     })
 }
 
-// A row has at most 65,535 cells, whose errors add up to less than 2^32.
-fn sum(errors: &[u16]) -> i64 {
-    errors.iter().map(|&error| u32::from(error)).sum::<u32>().into()
-}
-
-/// Returns the sum of all gains, without the losses.
-fn most_gain(stay: &[u16], shifted: &[u16]) -> i64 {
-    stay.iter().zip(shifted).map(|(stay, shifted)| u32::from(stay.saturating_sub(*shifted))).sum::<u32>().into()
-}
-
-/// Moves a range of cells by `by` cells towards its start, or if negative towards its end. Lists
-/// the vacated cells, which are unknown.
-fn shift_cells(grid: &mut Grid, cells: Range<usize>, by: isize, vacated: &mut Vec<u32>) {
-    let distance = by.unsigned_abs();
-    let unknown = if by > 0 {
-        for to in cells.start..cells.end - distance {
-            grid.set_packed(to, grid.packed()[to + distance]);
+/// Returns the best of the windows of some segments.
+fn best_of_segments(
+    segments: impl Iterator<Item = Range<usize>>,
+    best_window: impl Fn(Range<usize>) -> Option<Window>,
+) -> Option<Window> {
+    let mut best: Option<Window> = None;
+    for window in segments.filter_map(best_window) {
+        if best.is_none_or(|best| window.gain > best.gain) {
+            best = Some(window);
         }
-        cells.end - distance..cells.end
-    } else {
-        for to in (cells.start + distance..cells.end).rev() {
-            grid.set_packed(to, grid.packed()[to - distance]);
-        }
-        cells.start..cells.start + distance
-    };
-    for at in unknown {
-        grid.set_packed(at, PackedCell::FOREIGN);
-        vacated.push(at as u32);
     }
-}
-
-/// Appends the operations of a window of a row: DCH and ICH, or one if it has the last column.
-// A terminal that moves the cursor by an operation leaves it in the row, where CR or CHA finds any column.
-fn write_column_shift(row: usize, window: Window, size: Size, cursor: KnownCursor, bytes: &mut Vec<u8>) {
-    let distance = window.by.unsigned_abs();
-    let (delete, insert) = places(window);
-    let (is_cut, is_last) = (window.by > 0, window.end == usize::from(size.columns));
-    let row = row as u16;
-    let position = |column: usize| CellPosition { column: column as u16, row };
-    // An insertion in a window that ends with the row pushes cells off the screen: none has to be deleted first.
-    if is_cut || !is_last {
-        cheapest_move(cursor, position(delete)).write(bytes);
-        write_operation(distance, b'P', bytes);
-        if is_cut && is_last {
-            return;
-        }
-        cheapest_move(KnownCursor::InRow(row), position(insert)).write(bytes);
-    } else {
-        cheapest_move(cursor, position(insert)).write(bytes);
-    }
-    write_operation(distance, b'@', bytes);
-}
-
-/// Appends the operations of a window of rows: DL and IL, or one if the window has the last row.
-fn write_row_shift(window: Window, size: Size, bytes: &mut Vec<u8>) {
-    let distance = window.by.unsigned_abs();
-    let (delete, insert) = places(window);
-    let is_last = window.end == usize::from(size.rows);
-    let to = |row: usize| Move::To(CellPosition { column: 0, row: row as u16 });
-    if window.by > 0 || !is_last {
-        to(delete).write(bytes);
-        write_operation(distance, b'M', bytes);
-    }
-    if window.by < 0 || !is_last {
-        to(insert).write(bytes);
-        write_operation(distance, b'L', bytes);
-    }
-}
-
-/// Returns the places at which a shift deletes, and then inserts.
-fn places(Window { start, end, by, .. }: Window) -> (usize, usize) {
-    let other = end - by.unsigned_abs();
-    if by > 0 { (start, other) } else { (other, start) }
-}
-
-/// Appends the sequence that deletes or inserts a number of cells or rows.
-fn write_operation(count: usize, last: u8, bytes: &mut Vec<u8>) {
-    if count == 1 {
-        bytes.extend_from_slice(&[b'\x1b', b'[', last]);
-    } else {
-        write_sequence(bytes, count as u16, last);
-    }
+    best
 }
 
 #[cfg(all(test, unit_tests))]

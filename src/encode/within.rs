@@ -2,11 +2,13 @@
 
 use super::capped;
 use super::differences::Differences;
+use super::halves::PictureHalves;
 use super::lossy;
 use super::moves::KnownCursor;
 use super::shifts::{ShiftMemory, ShiftTerms};
 use super::wrong_cells::WrongCells;
 use super::{Allowance, Encoder, Order, Pen, TerminalState};
+use crate::capabilities::Shifts;
 use crate::grid::{Grid, Size};
 use std::cell::RefCell;
 use std::time::Duration;
@@ -29,7 +31,9 @@ impl Encoder {
         let in_motion = self.ages.record(wanted, allowance.now);
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
         FRAME.with_borrow_mut(|frame| {
-            frame.differences.find(&known.shown, wanted);
+            frame.halves.read_wanted(wanted);
+            frame.halves.read_shown(&known.shown);
+            frame.differences.find(&frame.halves);
             // At rest, the cells get their final colours, those with the largest errors first: coarser colours
             // (`draw_capped`) would soon have to be sent again.
             let is_capped = in_motion && frame.differences.appearing <= capped::MAX_APPEARING;
@@ -40,7 +44,7 @@ impl Encoder {
             let start = bytes.len();
             // Below a cap that leaves out cells, vacated ones, which cannot wait, would take the room of others.
             if is_capped && (cap.is_some() || allowance.max_bytes.is_none()) {
-                self.shift(&mut known.shown, wanted, ShiftTerms::EQUAL, frame, bytes);
+                self.shift(&mut known.shown, ShiftTerms::EQUAL, frame, bytes);
             }
             self.draw_lossy(wanted, known, (allowance, caps, in_motion, cap), (frame, start), bytes)
         })
@@ -49,19 +53,22 @@ impl Encoder {
     /// Shifts what the terminal shows, where that is cheaper than writing cells: appends the
     /// operations, and updates the shown grid and the differences.
     ///
+    /// The frame's halves must be those of the two grids.
+    ///
     /// Returns whether anything has been shifted. The shown grid before it is then in the frame's memory.
     fn shift(
         &self,
         shown: &mut Grid,
-        wanted: &Grid,
         terms: ShiftTerms,
-        FrameMemory { before, shifts, differences, .. }: &mut FrameMemory,
+        FrameMemory { before, shifts, halves, differences, .. }: &mut FrameMemory,
         bytes: &mut Vec<u8>,
     ) -> bool {
-        let uses_shifts = self.order == Order::Color;
-        let is_shifted = uses_shifts && shifts.shift([shown, before], wanted, (self.shifts, terms), bytes);
+        if self.order != Order::Color || self.shifts == Shifts::Off {
+            return false;
+        }
+        let is_shifted = shifts.shift([shown, before], halves, (self.shifts, terms), bytes);
         if is_shifted {
-            differences.find(shown, wanted);
+            differences.find(halves);
             differences.mark_vacated(&shifts.vacated);
         }
         is_shifted
@@ -69,7 +76,11 @@ impl Encoder {
 
     /// Shifts what the terminal shows, as [`shift`](Self::shift) does, before an exact frame.
     pub(super) fn shift_exactly(&self, shown: &mut Grid, wanted: &Grid, bytes: &mut Vec<u8>) {
-        FRAME.with_borrow_mut(|frame| self.shift(shown, wanted, ShiftTerms::EXACT, frame, bytes));
+        FRAME.with_borrow_mut(|frame| {
+            frame.halves.read_wanted(wanted);
+            frame.halves.read_shown(shown);
+            self.shift(shown, ShiftTerms::EXACT, frame, bytes);
+        });
     }
 
     /// Appends a frame of the allowed quality or, if that exceeds `cap`, one within the cap.
@@ -114,7 +125,8 @@ impl Encoder {
                 if has_shifts {
                     bytes.truncate(start);
                     known.shown.clone_from(&frame.before);
-                    frame.differences.find(&known.shown, wanted);
+                    frame.halves.read_shown(&known.shown);
+                    frame.differences.find(&frame.halves);
                 }
                 self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
             }
@@ -196,6 +208,7 @@ impl Encoder {
             drawn.clone_from(&known.shown);
             capped::put_text_and_unknown(wanted, differences, drawn);
             cursor = self.write(drawn, &mut known.shown, &mut known.pen, bytes);
+            frame.halves.read_shown(&known.shown);
         }
         let max_bytes = max_bytes.saturating_sub(bytes.len() - start + self.synchronized_len());
         let (after_text, pen) = (bytes.len(), known.pen);
@@ -203,7 +216,7 @@ impl Encoder {
         // Vacated cells that do not fit are tried with half of the bytes for shifts, and then without shifts.
         for divisor in [1, 2] {
             let terms = ShiftTerms::at_rate(self.shortage.rate(), max_bytes / divisor);
-            if max_bytes < capped::LEAST_BYTES || !self.shift(&mut known.shown, wanted, terms, frame, bytes) {
+            if max_bytes < capped::LEAST_BYTES || !self.shift(&mut known.shown, terms, frame, bytes) {
                 break;
             }
             let lens = (max_bytes, bytes.len() - after_text);
@@ -215,7 +228,8 @@ impl Encoder {
             known.pen = pen;
             known.shown.clone_from(&frame.before);
             frame.shifts.vacated.clear();
-            frame.differences.find(&known.shown, wanted);
+            frame.halves.read_shown(&known.shown);
+            frame.differences.find(&frame.halves);
         }
         if drawn.is_err() {
             drawn = self.draw_capped_picture(wanted, &mut known, (max_bytes, 0), &frame.differences, bytes);
@@ -288,6 +302,7 @@ struct FrameMemory {
     /// The grid that the terminal showed before the shifts of this frame.
     before: Grid,
     shifts: ShiftMemory,
+    halves: PictureHalves,
     differences: Differences,
     wrong: WrongCells,
 }
@@ -301,6 +316,7 @@ thread_local! {
             next: empty.clone(),
             before: empty,
             shifts: ShiftMemory::default(),
+            halves: PictureHalves::default(),
             differences: Differences::default(),
             wrong: WrongCells::default(),
         }

@@ -1,7 +1,7 @@
 //! The cells that are visibly wrong after a frame under a limit of bytes.
 
-use super::differences::{Differences, UNKNOWN};
-use super::halves::{Halves, Tolerance, picture_halves};
+use super::differences::Differences;
+use super::halves::{Halves, NO_PICTURE, Tolerance, picture_halves};
 use super::oklab_pairs::OklabPairs;
 use crate::grid::Grid;
 
@@ -30,7 +30,7 @@ impl WrongCells {
         inexact.clear();
         halves.clear();
         for (&place, &wanted) in differences.places.iter().zip(&differences.wanted) {
-            let shown = picture_halves(shown.packed()[place as usize]).unwrap_or(UNKNOWN);
+            let shown = picture_halves(shown.packed()[place as usize]).unwrap_or(NO_PICTURE);
             if shown != wanted {
                 inexact.push(place);
                 halves.push([shown, wanted]);

@@ -12,68 +12,113 @@ fn noise(mut state: u32) -> impl FnMut() -> u32 {
 }
 
 /// Returns the gain of a window, added up place by place.
-fn gain_of(window: Range<usize>, by: isize, [stay, shifted]: [&[i64]; 2], most: i64, price: i64) -> i64 {
+///
+/// `shifted` has the errors of all places at its distance.
+fn gain_of(window: Range<usize>, by: isize, [stay, shifted]: [&[f32]; 2], most: f32, price: f32) -> f32 {
     let gain = |place: usize| match place.checked_add_signed(by).filter(|from| window.contains(from)) {
         Some(_) => stay[place] - shifted[place],
         None => stay[place] - most,
     };
-    window.clone().map(gain).sum::<i64>() - price
+    window.clone().map(gain).sum::<f32>() - price
+}
+
+/// Returns the errors of places with some errors at each distance.
+fn place_errors(farthest: usize, stay: &[f32], shifted: impl Fn(isize, usize) -> f32) -> PlaceErrors {
+    let distances = Distances { farthest };
+    let groups = distances.groups().len();
+    let mut errors = PlaceErrors::default();
+    errors.distances = distances;
+    errors.stay.resize(stay.len().div_ceil(LANES), F32x8::ZERO);
+    // Numbers of distances beyond the farthest, which must not count.
+    errors.shifted.resize(groups * stay.len(), F32x8([-1e6; LANES]));
+    for (place, &error) in stay.iter().enumerate() {
+        errors.stay[place / LANES].0[place % LANES] = error;
+        for by in (1..=farthest.cast_signed()).flat_map(|by| [by, -by]) {
+            let (group, lane) = distances.slot(by);
+            errors.shifted[place * groups + group].0[lane] = shifted(by, place);
+        }
+    }
+    errors.sum_up(stay.len());
+    errors
 }
 
 #[test]
 fn the_best_window_gains_the_most() {
     let mut number = noise(3);
-    let (mut windows, mut inner) = (0, 0);
-    for _ in 0..3_000 {
-        let count = 1 + number() as usize % 9;
-        let most = 10;
-        let mut errors = || (0..count).map(|_| i64::from(number() % 11)).collect::<Vec<_>>();
-        let (stay, shifted) = (errors(), errors());
-        let sums: Vec<i64> = (0..=count).map(|end| stay[..end].iter().sum()).collect();
-        let prices = Prices { one: 3, two: 5 };
-        for by in [1_isize, -1, 2, -2, 5, -5] {
-            for is_last in [false, true] {
-                let price = |end: usize| if is_last && end == count { prices.one } else { prices.two };
-                let all = (0..count).flat_map(|start| (start + 1..=count).map(move |end| start..end));
-                let gains = all
-                    .filter(|window| window.len() > by.unsigned_abs())
-                    .map(|window| gain_of(window.clone(), by, [&stay, &shifted], most, price(window.end)));
-                let expected = gains.max().filter(|&gain| gain > 0);
-                let places = Places { sums: &sums, most };
-                let found = best_window(&places, |place| shifted[place], by, prices, is_last);
-                assert_eq!(found.map(|window| window.gain), expected, "{stay:?} {shifted:?} {by} {is_last}");
-                let Some(Window { start, end, gain, .. }) = found else { continue };
-                assert_eq!(gain, gain_of(start..end, by, [&stay, &shifted], most, price(end)), "{start}..{end}");
-                windows += 1;
-                inner += usize::from(start > 0 && end < count);
+    let (mut windows, mut inner, mut far) = (0, 0, 0);
+    for _ in 0..1_500 {
+        let (count, farthest) = (1 + number() as usize % 40, 1 + number() as usize % MOST_DISTANCE);
+        let (most, prices) = ((number() % 7) as f32, Prices { one: 3.0, two: 5.0 });
+        let mut errors = |most: u32| (0..count).map(|_| (number() % most) as f32).collect::<Vec<_>>();
+        let stay = errors(11);
+        let distances: Vec<isize> = (1..=farthest.cast_signed()).flat_map(|by| [by, -by]).collect();
+        let shifted: Vec<Vec<f32>> = distances.iter().map(|_| errors(7)).collect();
+        let of = |by: isize| &shifted[distances.iter().position(|&other| other == by).expect("a distance")];
+        let errors = place_errors(farthest, &stay, |by, place| of(by)[place]);
+        let start = number() as usize % count;
+        let part = start..start + 1 + number() as usize % (count - start);
+        for is_last in [false, true] {
+            let price = |end: usize| if is_last && end == part.end { prices.one } else { prices.two };
+            let gain =
+                |window: Range<usize>, by: isize| gain_of(window.clone(), by, [&stay, of(by)], most, price(window.end));
+            let mut expected = 0.0_f32;
+            for &by in &distances {
+                for start in part.clone() {
+                    for end in start + 1 + by.unsigned_abs()..=part.end {
+                        expected = expected.max(gain(start..end, by));
+                    }
+                }
             }
+            let found = errors.best_window(part.clone(), most, prices, is_last, None);
+            let gains = found.map_or(0.0, |window| window.gain);
+            assert_eq!(gains, expected, "{stay:?} {shifted:?} {part:?} {is_last}");
+            let Some(Window { start, end, by, gain: found }) = found else { continue };
+            assert_eq!(found, gain(start..end, by), "{start}..{end} by {by}");
+            windows += 1;
+            inner += usize::from(start > part.start && end < part.end);
+            far += usize::from(by.unsigned_abs() > LANES);
         }
     }
-    assert!(windows > 1_000 && inner > 100, "{windows} windows, {inner} of them within the places");
+    assert!(windows > 1_000 && inner > 100 && far > 20, "{windows} windows, {inner} of them inner, {far} of them far");
+}
+
+#[test]
+fn the_likely_distance_is_taken_among_equal_ones() {
+    let errors = place_errors(9, &[5.0; 30], |_, _| 0.0);
+    let by =
+        |likely| errors.best_window(0..30, 0.0, Prices { one: 1.0, two: 1.0 }, true, likely).map(|window| window.by);
+    assert_eq!((by(None), by(Some(-9)), by(Some(4)), by(Some(10))), (Some(1), Some(-9), Some(4), Some(1)));
 }
 
 #[test]
 fn errors_are_squared_differences_up_to_a_limit() {
     let mut number = noise(5);
     let mut ink = || PackedInk::rgb(crate::color::Srgb8::new(number() as u8, number() as u8 % 4, 7));
-    let mut grid = || {
-        let mut grid = Grid::new(Size::new(23, 2));
-        for at in 0..46 {
-            grid.set_packed(at, PackedCell::new('▄', ink(), ink()));
-        }
-        grid
-    };
-    let (a, b) = (grid(), grid());
+    let size = Size::new(23, 2);
+    let mut halves = || (0..46).map(|_| [ink(), ink()]).collect::<Vec<_>>();
+    let (a, b) = (halves(), halves());
     let (mut planes_a, mut planes_b) = (Planes::default(), Planes::default());
-    planes_a.fill(&a);
-    planes_b.fill(&b);
-    for limit in [1, 300, u16::MAX] {
-        let mut errors = vec![9; 20];
-        put_errors([&planes_a, &planes_b], [26, 24], limit, &mut errors);
-        for (place, &error) in errors.iter().enumerate() {
-            let (a, b) = (a.packed()[26 + place], b.packed()[24 + place]);
-            let squares = [(a.fg, b.fg), (a.bg, b.bg)].map(|(a, b)| super::super::halves::squared_difference(a, b));
-            assert_eq!(u32::from(error), squares.iter().sum::<u32>().min(limit.into()), "cell {place}");
+    planes_a.fill(&a, size);
+    planes_b.fill(&b, size);
+    for limit in [1_u32, 300, 60_000] {
+        let expected = |from: usize, to: usize| {
+            crate::encode::halves::squared_differences(a[from], b[to]).iter().sum::<u32>().min(limit) as f32
+        };
+        let mut of_row = Vec::new();
+        let rows = [(&planes_a, 1), (&planes_b, 0)];
+        let sum = dispatch(PutRowErrors { rows, limit: limit as f32, errors: &mut of_row });
+        let errors: Vec<f32> = of_row.iter().flat_map(|eight| eight.0).collect();
+        let all: Vec<f32> = (0..23).map(|column| expected(23 + column, column)).collect();
+        assert_eq!((&errors[..23], sum), (&*all, all.iter().sum::<f32>()));
+        let (distances, mut errors) = (Distances { farthest: 16 }, Vec::new());
+        let (shown, wanted, limit) = (&planes_a, &planes_b, limit as f32);
+        dispatch(PutShiftedErrors { shown, wanted, row: 1, limit, distances, errors: &mut errors });
+        for column in 0..23_isize {
+            for by in (1..=16).flat_map(|by| [by, -by]).filter(|by| (0..23).contains(&(column + by))) {
+                let (group, lane) = distances.slot(by);
+                let error = errors[4 * column as usize + group].0[lane];
+                assert_eq!(error, expected((23 + column + by) as usize, 23 + column as usize), "{column} by {by}");
+            }
         }
     }
 }
@@ -92,7 +137,13 @@ fn grid_of(columns: usize, inks: &[Option<PackedInk>]) -> Grid {
 fn operations([shown, wanted]: [&Grid; 2], shifts: Shifts) -> String {
     let (mut bytes, mut shown, mut before) = (Vec::new(), shown.clone(), Grid::new(shown.size()));
     let mut memory = ShiftMemory::default();
-    memory.shift([&mut shown, &mut before], wanted, (shifts, ShiftTerms::EQUAL), &mut bytes);
+    let mut halves = PictureHalves::default();
+    halves.read_shown(&shown);
+    halves.read_wanted(wanted);
+    memory.shift([&mut shown, &mut before], &mut halves, (shifts, ShiftTerms::EQUAL), &mut bytes);
+    let mut halves_after = PictureHalves::default();
+    halves_after.read_shown(&shown);
+    assert!(halves.shown == halves_after.shown, "the halves are shifted with the cells");
     let vacated = shown.packed().iter().filter(|cell| cell.is_foreign()).count();
     assert_eq!(vacated, memory.vacated.len());
     String::from_utf8(bytes).expect("ASCII")
@@ -146,7 +197,7 @@ fn windows_are_written_with_deletion_before_insertion() {
     let size = Size::new(80, 24);
     let columns_from = |cursor, start, end, by| {
         let mut bytes = Vec::new();
-        write_column_shift(4, Window { start, end, by, gain: 1 }, size, cursor, &mut bytes);
+        write_column_shift(4, Window { start, end, by, gain: 1.0 }, size, cursor, &mut bytes);
         String::from_utf8(bytes).expect("ASCII")
     };
     let columns = |start, end, by| columns_from(KnownCursor::Unknown, start, end, by);
@@ -159,7 +210,7 @@ fn windows_are_written_with_deletion_before_insertion() {
     assert_eq!(columns_from(KnownCursor::InRow(2), 0, 40, -2), "\x1b[39G\n\n\x1b[2P\r\x1b[2@");
     let rows = |start, end, by| {
         let mut bytes = Vec::new();
-        write_row_shift(Window { start, end, by, gain: 1 }, size, &mut bytes);
+        write_row_shift(Window { start, end, by, gain: 1.0 }, size, &mut bytes);
         String::from_utf8(bytes).expect("ASCII")
     };
     assert_eq!(rows(2, 24, 1), "\x1b[3H\x1b[M");

@@ -1,11 +1,18 @@
-//! The best window of cells or rows that is shifted by a given distance.
+//! The best window of cells or rows that is shifted.
 //!
-//! It is the contiguous range with the largest sum of gains (Bentley 1984), less what its vacated places cost.
+//! It is the contiguous range with the largest sum of gains (Bentley 1984), less what its vacated places cost. Eight
+//! distances are searched at once.
 
+use crate::lanes::{F32x8, LANES, Lanes, SimdKernel};
+use crate::simd::dispatch;
+use std::array;
 use std::ops::Range;
 
+/// The greatest number of places by which contents are shifted.
+pub(super) const MOST_DISTANCE: usize = 16;
+
 /// A range of places whose contents are shifted within it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     pub(super) start: usize,
     pub(super) end: usize,
@@ -13,86 +20,304 @@ pub(super) struct Window {
     /// the end.
     pub(super) by: isize,
     /// The error that is removed, less the prices.
-    pub(super) gain: i64,
-}
-
-impl Window {
-    /// Returns the window with its places counted from another start.
-    pub(super) fn moved_by(self, places: usize) -> Self {
-        Self { start: self.start + places, end: self.end + places, ..self }
-    }
-}
-
-/// The places of a row or column, and their errors if nothing is shifted.
-pub(super) struct Places<'a> {
-    /// Prefix sums of the errors: the error of a place is the difference of two neighbouring sums.
-    pub(super) sums: &'a [i64],
-    /// The greatest error of a place, which a vacated one has.
-    pub(super) most: i64,
-}
-
-impl Places<'_> {
-    fn len(&self) -> usize {
-        self.sums.len() - 1
-    }
-
-    fn stay(&self, place: usize) -> i64 {
-        self.sums[place + 1] - self.sums[place]
-    }
-
-    /// Returns by how much the error grows where places are vacated.
-    fn vacated(&self, places: Range<usize>) -> i64 {
-        self.most * places.len().cast_signed() as i64 - (self.sums[places.end] - self.sums[places.start])
-    }
+    pub(super) gain: f32,
 }
 
 /// The prices of a shift with one operation, and with two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prices {
-    pub(super) one: i64,
-    pub(super) two: i64,
+    pub(super) one: f32,
+    pub(super) two: f32,
 }
 
-/// Returns the window with the largest gain if its contents are moved by `by` places; `None` if no
-/// window gains.
+/// The distances that are searched, in both directions, in groups of eight.
 ///
-/// `shifted` returns the error of a place that gets the contents `by` places further. One operation suffices at the end
-/// of the places if nothing follows them on the screen (`is_last`).
-pub(super) fn best_window(
-    places: &Places<'_>,
-    shifted: impl Fn(usize) -> i64,
-    by: isize,
-    prices: Prices,
-    is_last: bool,
-) -> Option<Window> {
-    let distance = by.unsigned_abs();
-    let count = places.len();
-    let mut best: Option<Window> = None;
-    let mut take = |start: usize, end: usize, sum: i64| {
-        let price = if is_last && end == count { prices.one } else { prices.two };
-        if sum - price > best.map_or(0, |best| best.gain) {
-            best = Some(Window { start, end, by, gain: sum - price });
-        }
-    };
-    let (mut sum, mut start) = (i64::MIN, 0);
-    if by > 0 {
-        for place in 0..count.saturating_sub(distance) {
-            if sum <= 0 {
-                (sum, start) = (0, place);
-            }
-            sum += places.stay(place) - shifted(place);
-            let end = place + 1 + distance;
-            take(start, end, sum - places.vacated(place + 1..end));
-        }
-    } else {
-        for place in distance..count {
-            let begun = -places.vacated(place - distance..place);
-            if sum <= begun {
-                (sum, start) = (begun, place - distance);
-            }
-            sum += places.stay(place) - shifted(place);
-            take(start, place + 1, sum);
+/// The groups towards the start come first: their lanes have ascending distances, those of the others descending ones.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Distances {
+    /// The greatest distance, at most [`MOST_DISTANCE`].
+    pub(super) farthest: usize,
+}
+
+/// The largest number of groups of distances.
+const MOST_GROUPS: usize = 2 * MOST_DISTANCE.div_ceil(LANES);
+
+impl Distances {
+    /// Returns the number of groups in each direction.
+    fn groups_per_direction(self) -> usize {
+        self.farthest.div_ceil(LANES)
+    }
+
+    /// Returns the indices of the groups.
+    pub(super) fn groups(self) -> Range<usize> {
+        0..2 * self.groups_per_direction()
+    }
+
+    /// Returns the distance of a group's first lane: positive towards the start. Each lane has one
+    /// more than the lane before.
+    pub(super) fn first_by(self, group: usize) -> isize {
+        let per_direction = self.groups_per_direction();
+        if group < per_direction {
+            (LANES * group + 1).cast_signed()
+        } else {
+            -(LANES * (group - per_direction + 1)).cast_signed()
         }
     }
-    best
+
+    /// Returns the group and the lane of a distance.
+    pub(super) fn slot(self, by: isize) -> (usize, usize) {
+        let place = by.unsigned_abs() - 1;
+        let (group, lane) = (place / LANES, place % LANES);
+        if by > 0 { (group, lane) } else { (self.groups_per_direction() + group, LANES - 1 - lane) }
+    }
+}
+
+/// The errors of consecutive places: the cells of a row, or the rows of the screen.
+// In f32, which has eight lanes. Errors and sums are whole numbers, and exact up to 2^24: those of the rows of a large
+// screen may be off by some millionths.
+#[derive(Default)]
+pub(super) struct PlaceErrors {
+    pub(super) distances: Distances,
+    /// The errors if nothing is shifted.
+    pub(super) stay: Vec<F32x8>,
+    /// Prefix sums of `stay`: that of the first `n` errors has the index `MOST_DISTANCE + n`, and
+    /// the numbers before and behind are of no account.
+    sums: Vec<f32>,
+    /// The errors with contents from other places: for each place all groups of distances.
+    pub(super) shifted: Vec<F32x8>,
+}
+
+impl PlaceErrors {
+    /// Sums up the errors of `count` places if nothing is shifted.
+    pub(super) fn sum_up(&mut self, count: usize) {
+        let mut sum = 0.0;
+        self.sums.clear();
+        self.sums.resize(MOST_DISTANCE + 1, 0.0);
+        self.sums.extend(self.stay.iter().flat_map(|eight| eight.0).take(count).map(|error| {
+            sum += error;
+            sum
+        }));
+        self.sums.resize(2 * MOST_DISTANCE + LANES + 1 + count, 0.0);
+    }
+
+    /// Returns the sum of the errors of some places if nothing is shifted.
+    pub(super) fn staying(&self, places: Range<usize>) -> f32 {
+        self.sums[MOST_DISTANCE + places.end] - self.sums[MOST_DISTANCE + places.start]
+    }
+
+    /// Returns the sum of the errors of some places with the contents of `by` places further.
+    pub(super) fn shifted_by(&self, by: isize, places: Range<usize>) -> f32 {
+        let (group, lane) = self.distances.slot(by);
+        let groups = self.distances.groups().len();
+        places.map(|place| self.shifted[place * groups + group].0[lane]).sum()
+    }
+
+    /// Returns the window with the largest gain within some places; `None` if no window gains.
+    ///
+    /// `most` is the error of a vacated place. One operation suffices at the end of the places if nothing follows them
+    /// on the screen (`is_last`). Of distances with equal gains, the `likely` one is taken, then the shortest.
+    pub(super) fn best_window(
+        &self,
+        part: Range<usize>,
+        most: f32,
+        prices: Prices,
+        is_last: bool,
+        likely: Option<isize>,
+    ) -> Option<Window> {
+        if self.staying(part.clone()) <= prices.one {
+            return None;
+        }
+        let found = dispatch(FindWindows { errors: self, part: part.clone(), most, prices, is_last });
+        let farthest = self.distances.farthest.min(part.len() - 1).cast_signed();
+        let all = (1..=farthest).flat_map(|by| [by, -by]);
+        let mut best: Option<Window> = None;
+        for by in likely.filter(|by| by.abs() <= farthest).into_iter().chain(all) {
+            let (group, lane) = self.distances.slot(by);
+            let [gain, start, end] = found[group].map(|numbers| numbers.0[lane]);
+            if gain > best.map_or(0.0, |best| best.gain) {
+                best = Some(Window { start: start as usize, end: end as usize, by, gain });
+            }
+        }
+        best
+    }
+}
+
+/// Finds the best window of each distance: its gain, 0 if no window gains, its start and its end.
+struct FindWindows<'a> {
+    errors: &'a PlaceErrors,
+    part: Range<usize>,
+    most: f32,
+    prices: Prices,
+    is_last: bool,
+}
+
+impl SimdKernel for FindWindows<'_> {
+    type Output = [[F32x8; 3]; MOST_GROUPS];
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> Self::Output {
+        let distances = self.errors.distances;
+        let mut found = [[F32x8::ZERO; 3]; MOST_GROUPS];
+        for group in distances.groups() {
+            let first = distances.first_by(group);
+            let [a, b, c] = if first > 0 { self.towards_start::<N>(group) } else { self.towards_end::<N>(group) };
+            found[group] = [a.store(), b.store(), c.store()];
+        }
+        found
+    }
+}
+
+impl FindWindows<'_> {
+    /// Finds the best windows of a group whose contents move towards the start.
+    #[inline(always)]
+    fn towards_start<N: Lanes>(&self, group: usize) -> [N; 3] {
+        let Range { start, end } = self.part;
+        let nearest = self.errors.distances.first_by(group).unsigned_abs();
+        let distance = lane_numbers::<N>() + N::splat(nearest as f32);
+        let mut sweep = Sweep::new(group, distance, start);
+        // The windows of these places end before the last place at each of the distances.
+        let inner_end = end.saturating_sub(nearest + LANES).max(start);
+        for place in start..inner_end {
+            self.extend_towards_start::<N, false>(&mut sweep, place, nearest);
+        }
+        for place in inner_end..end.saturating_sub(nearest) {
+            self.extend_towards_start::<N, true>(&mut sweep, place, nearest);
+        }
+        [sweep.best, sweep.best_start, sweep.best_place + distance + N::splat(1.0)]
+    }
+
+    /// Extends windows whose contents move towards the start by a place, and those that are
+    /// vacated behind it.
+    #[inline(always)]
+    fn extend_towards_start<N: Lanes, const IS_NEAR_END: bool>(
+        &self,
+        sweep: &mut Sweep<N>,
+        place: usize,
+        nearest: usize,
+    ) {
+        let zero = N::splat(0.0);
+        sweep.begin_if_better(zero);
+        self.extend(sweep, place);
+        let next = MOST_DISTANCE + place + 1;
+        let vacated = load::<N>(&self.errors.sums, next + nearest) - N::splat(self.errors.sums[next]);
+        let gain = sweep.sum + vacated - N::splat(self.most) * sweep.distance;
+        let (price_of_one, price_of_two) = (N::splat(self.prices.one), N::splat(self.prices.two));
+        if IS_NEAR_END {
+            let left = N::splat((self.part.end - 1) as f32) - sweep.place - sweep.distance;
+            let is_one = left.le(zero);
+            let price = if self.is_last { N::select(is_one, price_of_one, price_of_two) } else { price_of_two };
+            sweep.take(N::select(zero.le(left), gain - price, zero));
+        } else {
+            sweep.take(gain - price_of_two);
+        }
+        sweep.place = sweep.place + N::splat(1.0);
+    }
+
+    /// Finds the best windows of a group whose contents move towards the end.
+    #[inline(always)]
+    fn towards_end<N: Lanes>(&self, group: usize) -> [N; 3] {
+        let Range { start, end } = self.part;
+        let farthest = self.errors.distances.first_by(group).unsigned_abs();
+        let distance = N::splat(farthest as f32) - lane_numbers::<N>();
+        let first = start + farthest + 1 - LANES;
+        let mut sweep = Sweep::new(group, distance, first);
+        let last = end - 1;
+        let inner_start = (start + farthest).clamp(first, first.max(last));
+        for place in first..inner_start {
+            self.extend_towards_end::<N, true>(&mut sweep, place, farthest, self.prices.two);
+        }
+        for place in inner_start..last {
+            self.extend_towards_end::<N, false>(&mut sweep, place, farthest, self.prices.two);
+        }
+        if first <= last {
+            let price = if self.is_last { self.prices.one } else { self.prices.two };
+            self.extend_towards_end::<N, true>(&mut sweep, last, farthest, price);
+        }
+        [sweep.best, sweep.best_start - distance, sweep.best_place + N::splat(1.0)]
+    }
+
+    /// Extends windows whose contents move towards the end by a place. They may begin with it,
+    /// behind the places that are then vacated.
+    #[inline(always)]
+    fn extend_towards_end<N: Lanes, const IS_NEAR_START: bool>(
+        &self,
+        sweep: &mut Sweep<N>,
+        place: usize,
+        farthest: usize,
+        price: f32,
+    ) {
+        let (sums, at) = (&self.errors.sums, MOST_DISTANCE + place);
+        let vacated = N::splat(sums[at]) - load(sums, at - farthest);
+        let begun = vacated - N::splat(self.most) * sweep.distance;
+        if IS_NEAR_START {
+            let can_begin = (N::splat(self.part.start as f32) + sweep.distance).le(sweep.place);
+            sweep.begin_if_better(N::select(can_begin, begun, N::splat(f32::NEG_INFINITY)));
+        } else {
+            sweep.begin_if_better(begun);
+        }
+        self.extend(sweep, place);
+        sweep.take(sweep.sum - N::splat(price));
+        sweep.place = sweep.place + N::splat(1.0);
+    }
+
+    /// Adds the gain of a place to the sums.
+    #[inline(always)]
+    fn extend<N: Lanes>(&self, sweep: &mut Sweep<N>, place: usize) {
+        let PlaceErrors { distances, stay, shifted, .. } = self.errors;
+        let shifted = N::load(&shifted[place * distances.groups().len() + sweep.group]);
+        sweep.sum = sweep.sum + (N::splat(stay[place / LANES].0[place % LANES]) - shifted);
+    }
+}
+
+/// The search of the best windows of eight distances, place by place.
+struct Sweep<N> {
+    /// The index of the group of distances.
+    group: usize,
+    distance: N,
+    /// The current place, in all lanes.
+    place: N,
+    /// The gain of the best window that ends with the current place, and the place where it began.
+    sum: N,
+    start: N,
+    best: N,
+    best_start: N,
+    /// The place with which the best window has ended.
+    best_place: N,
+}
+
+impl<N: Lanes> Sweep<N> {
+    #[inline(always)]
+    fn new(group: usize, distance: N, place: usize) -> Self {
+        let (zero, sum) = (N::splat(0.0), N::splat(f32::NEG_INFINITY));
+        let place = N::splat(place as f32);
+        Self { group, distance, place, sum, start: zero, best: zero, best_start: zero, best_place: zero }
+    }
+
+    /// Begins a window at the current place unless the one so far gains more than `begun`.
+    #[inline(always)]
+    fn begin_if_better(&mut self, begun: N) {
+        self.start = N::select(self.sum.le(begun), self.place, self.start);
+        self.sum = self.sum.max(begun);
+    }
+
+    /// Takes the window that ends with the current place if it gains more than the best one.
+    #[inline(always)]
+    fn take(&mut self, gain: N) {
+        let is_better = self.best.lt(gain);
+        self.best = self.best.max(gain);
+        self.best_start = N::select(is_better, self.start, self.best_start);
+        self.best_place = N::select(is_better, self.place, self.best_place);
+    }
+}
+
+/// Returns the numbers of the lanes.
+#[inline(always)]
+fn lane_numbers<N: Lanes>() -> N {
+    N::load(&F32x8(array::from_fn(|lane| lane as f32)))
+}
+
+/// Loads eight numbers from an index on; 0 if there are fewer.
+#[inline(always)]
+pub(super) fn load<N: Lanes>(numbers: &[f32], at: usize) -> N {
+    if let Some(&eight) = numbers[at..].first_chunk() { N::load(&F32x8(eight)) } else { N::splat(0.0) }
 }
