@@ -103,10 +103,11 @@ pub struct Allowance {
     ///
     /// While the picture changes, cells get coarser colours, or keep those of earlier frames, so that the frame fits
     /// with a small error. The longer a cell differs visibly, the more its error weighs, so that few differ for over a
-    /// second, or over one and a half times as long as frames of the allowed quality would take. At rest, the cells
-    /// with the smallest errors wait for a later frame. Cells that are within the quality's caps, and only made
-    /// exact, also wait if the frame would take more than 8 bytes per cell of the screen. Text and picture cells that
-    /// replace text or unknown contents never wait; with [`Quality::Exact`] no cell does.
+    /// second, or over one and a half times as long as frames of the allowed quality would take. When the picture stops
+    /// changing, frames continue like this until errors are small; then cells get their final colours, and those with
+    /// the smallest errors wait for a later frame. Cells that are within the quality's caps, and only made exact, also
+    /// wait if the frame would take more than 8 bytes per cell of the screen. Text and picture cells that replace text
+    /// or unknown contents never wait; with [`Quality::Exact`] no cell does.
     pub max_bytes: Option<usize>,
 }
 
@@ -289,12 +290,13 @@ impl Encoder {
     /// Returns the cursor after the frame.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> KnownCursor {
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
-        if self.shifts != Shifts::Off {
+        if self.uses_shifts() {
             self.shift_exactly(&mut known.shown, wanted, bytes);
         }
         let cursor = self.write(wanted, &mut known.shown, &mut known.pen, bytes);
         self.known = Some(known);
         self.due = None;
+        self.shortage = capped::Shortage::default();
         self.ages.clear_wrong();
         cursor
     }

@@ -68,8 +68,21 @@ struct ActiveCell {
 /// A smaller frame may have no room for a single change of the pen.
 pub(super) const LEAST_BYTES: usize = 200;
 
+/// The smallest number of bytes for the picture of a frame from which the rate is adapted.
+///
+/// Below it, only a frame without any cell lowers the rate.
+// Text may leave hardly any room, whatever the rate is. The marks of a synchronized update and a changed status line
+// leave more of the smallest limit.
+const LEAST_PICTURE_BYTES: usize = LEAST_BYTES / 2;
+
 /// The rate below which errors are invisible: a frame of the allowed quality is tried again.
 const LEAST_RATE: ExchangeRate = 0.3;
+
+/// The rate below which a picture at rest gets its final colours.
+// Final colours take 20 bytes a cell and more. At 200x60 and 50 KB/s the picture of three motions of four had 35 dB 1.7
+// to 3.1 seconds after their end when the first still frame began with them; it has 35 dB after 0.4 to 0.8 seconds, and
+// takes up to an eighth longer to become exact. With 0.3 it would take a fifth longer; 10 would save hardly anything.
+const RESTING_RATE: ExchangeRate = 3.0;
 
 /// The bytes of the chosen cells at which the rate aims, as a share of the limit.
 // A little too much: giving up the worst pairs uses 94 to 98 % of the limit. An aim of 1 used 92 to 96 % (0.1 dB less
@@ -96,6 +109,11 @@ impl Shortage {
     /// Returns whether frames of the allowed quality exceed the limit at present.
     pub(super) fn is_present(self) -> bool {
         self.rate.is_some()
+    }
+
+    /// Returns whether a picture at rest is still to be mended with coarse colours.
+    pub(super) fn leaves_large_errors(self) -> bool {
+        self.rate() > RESTING_RATE
     }
 
     /// Returns the exchange rate of the next frame.
@@ -192,8 +210,9 @@ pub(super) fn draw(
             let rate = shortage.rate();
             let written = scratch.choose_and_write_fitting(&mut frame, rate, &mut shortage.radius, &mut write);
             let bytes = frame.shift_bytes + written.bytes_of_all;
-            if frame.max_bytes < LEAST_BYTES
-                || !shortage.adapt_rate(rate, bytes as f32 / frame.max_bytes as f32)
+            let share_of_limit = bytes as f32 / frame.max_bytes.max(1) as f32;
+            if frame.max_bytes < LEAST_PICTURE_BYTES && bytes > 0
+                || !shortage.adapt_rate(rate, share_of_limit)
                 || left == 0
             {
                 return written.has_all_vacated;

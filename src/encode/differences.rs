@@ -1,9 +1,7 @@
 //! The cells in which the wanted grid's picture differs from the shown grid, and the wanted text.
 
 use super::halves::{Halves, NO_PICTURE, PictureHalves, squared_difference};
-use crate::grid::{Grid, PackedInk};
-use crate::lanes::{Lanes, SimdKernel};
-use crate::simd::dispatch;
+use crate::grid::Grid;
 
 /// The picture cells that differ, in reading order, and the cells of the wanted text.
 #[derive(Default)]
@@ -25,12 +23,12 @@ pub(super) struct Differences {
 pub(super) const VACATED: [u32; 2] = [u32::MAX - 1; 2];
 
 impl Differences {
-    /// Lists the differences of two pictures of equal size.
+    /// Lists the differences of the shown and the wanted picture.
     pub(super) fn find(&mut self, halves: &PictureHalves) {
         let Self { places, wanted, shown, squares, text, appearing } = self;
         let count = halves.wanted.len();
         text.clear();
-        // As many again as a block has cells, so that whole blocks can be written.
+        // With room for one more block than the cells need, a whole block can always be written.
         places.resize(count + BLOCK, 0);
         wanted.resize(count + BLOCK, NO_PICTURE);
         shown.resize(count + BLOCK, NO_PICTURE);
@@ -43,8 +41,11 @@ impl Differences {
         wanted.truncate(found);
         shown.truncate(found);
         squares.resize(found, [0; 2]);
-        let lists = [&*shown, &*wanted].map(|halves| halves.as_flattened());
-        dispatch(PutSquares { lists, squares: squares.as_flattened_mut() });
+        // All halves in one flat list, so that the compiler vectorises the loop.
+        let halves = shown.as_flattened().iter().zip(wanted.as_flattened());
+        for (square, (&shown, &wanted)) in squares.as_flattened_mut().iter_mut().zip(halves) {
+            *square = squared_difference(shown, wanted);
+        }
         *appearing = 0;
         for (squares, _) in squares.iter_mut().zip(&*shown).filter(|&(_, &shown)| shown == NO_PICTURE) {
             *squares = [u32::MAX; 2];
@@ -89,8 +90,8 @@ const BLOCK: usize = 8;
 /// Writes the differences of a block of cells, `(wanted, shown)`, to the start of the lists.
 ///
 /// Returns their number.
-// Each cell is written behind the differences so far, and stays there if it is one: without a branch that depends on
-// the picture.
+// Every cell is written, and the next one replaces it unless it differs: that takes no branch that depends on the
+// picture.
 fn find_in_block(
     start: usize,
     (of_wanted, of_shown): (&[Halves], &[Halves]),
@@ -103,28 +104,10 @@ fn find_in_block(
             text.push(at);
             continue;
         }
+        // Always less; the remainder spares three bounds checks.
         let next = found % BLOCK;
         (places[next], wanted[next], shown[next]) = (at, of_wanted, of_shown);
         found += usize::from(of_shown != of_wanted);
     }
     found
-}
-
-/// Sets the squared differences of two lists of colours.
-struct PutSquares<'a> {
-    lists: [&'a [PackedInk]; 2],
-    squares: &'a mut [u32],
-}
-
-impl SimdKernel for PutSquares<'_> {
-    type Output = ();
-
-    // A plain loop, which the compiler turns into instructions of the widest set.
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        let [a, b] = self.lists;
-        for (square, (&a, &b)) in self.squares.iter_mut().zip(a.iter().zip(b)) {
-            *square = squared_difference(a, b);
-        }
-    }
 }

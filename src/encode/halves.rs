@@ -1,8 +1,6 @@
 //! The colours of the two halves of a picture cell, and the tolerance of their differences.
 
 use crate::grid::{Grid, PackedCell, PackedInk};
-use crate::lanes::{Lanes, SimdKernel};
-use crate::simd::dispatch;
 
 /// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
@@ -59,35 +57,20 @@ pub(super) struct PictureHalves {
 }
 
 impl PictureHalves {
+    /// Reads the halves of the shown grid.
     pub(super) fn read_shown(&mut self, shown: &Grid) {
         read(shown, &mut self.shown);
     }
 
+    /// Reads the halves of the wanted grid.
     pub(super) fn read_wanted(&mut self, wanted: &Grid) {
         read(wanted, &mut self.wanted);
     }
 }
 
 fn read(grid: &Grid, halves: &mut Vec<Halves>) {
-    halves.resize(grid.packed().len(), NO_PICTURE);
-    dispatch(ReadHalves { cells: grid.packed(), halves });
-}
-
-/// Reads the halves of cells.
-struct ReadHalves<'a> {
-    cells: &'a [PackedCell],
-    halves: &'a mut [Halves],
-}
-
-impl SimdKernel for ReadHalves<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        for (&cell, halves) in self.cells.iter().zip(self.halves) {
-            *halves = picture_halves(cell).unwrap_or(NO_PICTURE);
-        }
-    }
+    halves.clear();
+    halves.extend(grid.packed().iter().map(|&cell| picture_halves(cell).unwrap_or(NO_PICTURE)));
 }
 
 /// [Codes](PackedCell::code) of cells without attributes: the numbers of the characters.

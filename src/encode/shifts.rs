@@ -121,7 +121,7 @@ pub(super) struct ShiftMemory {
     wanted: Planes,
     /// The errors of the rows of the screen, and then those of the cells of a row.
     errors: PlaceErrors,
-    /// The errors of the cells of a row that comes from another one.
+    /// The errors of the cells of a row, of which only the sum is used.
     of_cells: Vec<F32x8>,
     chosen: Vec<RowShift>,
 }
@@ -156,7 +156,7 @@ impl ShiftMemory {
     ) -> bool {
         self.vacated.clear();
         let lens = OperationLens::of(shifts);
-        if shifts == Shifts::Off || terms.max_bytes < terms.bytes(lens.full_row, 1) || halves.shown == halves.wanted {
+        if terms.max_bytes < terms.bytes(lens.full_row, 1) || halves.shown == halves.wanted {
             return false;
         }
         let size = shown.size();

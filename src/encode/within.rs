@@ -34,16 +34,17 @@ impl Encoder {
             frame.halves.read_wanted(wanted);
             frame.halves.read_shown(&known.shown);
             frame.differences.find(&frame.halves);
-            // At rest, the cells get their final colours, those with the largest errors first: coarser colours
-            // (`draw_capped`) would soon have to be sent again.
-            let is_capped = in_motion && frame.differences.appearing <= capped::MAX_APPEARING;
+            let has_few_appearing = frame.differences.appearing <= capped::MAX_APPEARING;
+            // At rest, frames stay under the cap while errors are large. Once they are lossy they stay so, even if they
+            // exceed the limit: otherwise the two kinds of frame might alternate forever.
+            let is_capped = has_few_appearing && (in_motion || self.shortage.leaves_large_errors());
             let cap = allowance.max_bytes.filter(|&max_bytes| is_capped && max_bytes >= capped::LEAST_BYTES);
             if let Some(max_bytes) = cap.filter(|_| self.shortage.is_present()) {
-                return self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes);
+                return self.draw_capped(wanted, known, (max_bytes, allowance.now, in_motion), frame, bytes);
             }
             let start = bytes.len();
             // Below a cap that leaves out cells, vacated ones, which cannot wait, would take the room of others.
-            if is_capped && (cap.is_some() || allowance.max_bytes.is_none()) {
+            if in_motion && has_few_appearing && (cap.is_some() || allowance.max_bytes.is_none()) {
                 self.shift(&mut known.shown, ShiftTerms::EQUAL, frame, bytes);
             }
             self.draw_lossy(wanted, known, (allowance, caps, in_motion, cap), (frame, start), bytes)
@@ -63,15 +64,17 @@ impl Encoder {
         FrameMemory { before, shifts, halves, differences, .. }: &mut FrameMemory,
         bytes: &mut Vec<u8>,
     ) -> bool {
-        if self.order != Order::Color || self.shifts == Shifts::Off {
-            return false;
-        }
-        let is_shifted = shifts.shift([shown, before], halves, (self.shifts, terms), bytes);
+        let is_shifted = self.uses_shifts() && shifts.shift([shown, before], halves, (self.shifts, terms), bytes);
         if is_shifted {
             differences.find(halves);
             differences.mark_vacated(&shifts.vacated);
         }
         is_shifted
+    }
+
+    /// Returns whether frames may shift what the terminal shows.
+    pub(super) fn uses_shifts(&self) -> bool {
+        self.order == Order::Color && self.shifts != Shifts::Off
     }
 
     /// Shifts what the terminal shows, as [`shift`](Self::shift) does, before an exact frame.
@@ -110,8 +113,11 @@ impl Encoder {
         });
         self.used_part = used;
         match result {
-            Ok(Drawn { pen, cursor, due, is_full }) => {
+            Ok(Drawn { pen, cursor, due, is_full, is_within_caps }) => {
                 self.is_full = is_full;
+                if is_within_caps {
+                    self.shortage = capped::Shortage::default();
+                }
                 // Copied instead of swapped: the thread's grid may have the memory of a larger screen, which the
                 // encoder would keep.
                 known.shown.clone_from(next);
@@ -128,7 +134,7 @@ impl Encoder {
                     frame.halves.read_shown(&known.shown);
                     frame.differences.find(&frame.halves);
                 }
-                self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
+                self.draw_capped(wanted, known, (max_bytes, allowance.now, in_motion), frame, bytes)
             }
         }
     }
@@ -165,12 +171,13 @@ impl Encoder {
             // Cells that shifts have vacated need not be written if the frame is drawn without shifts.
             if taken <= limit || writes <= fewest && (cap.is_none() || frame_start == start) {
                 let is_cut = writes < plan.write_count();
+                let is_within_caps = writes >= refines_from;
                 // All inexact cells are made exact together, when the last of them is due. When each was sent at its
                 // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
                 // (orbit, 80x24) instead of 1.14.
                 let refines = self.ages.all_exact_at(plan.inexact_cells(writes));
                 let due = if is_cut { Some(allowance.now) } else { refines };
-                return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
+                return Ok(Drawn { pen, cursor, due, is_full: is_full(taken), is_within_caps });
             }
             bytes.truncate(start);
             if let Some(max_bytes) = cap.filter(|_| !refines) {
@@ -195,7 +202,7 @@ impl Encoder {
         &mut self,
         wanted: &Grid,
         mut known: TerminalState,
-        (max_bytes, now): (usize, Duration),
+        (max_bytes, now, in_motion): (usize, Duration, bool),
         frame: &mut FrameMemory,
         bytes: &mut Vec<u8>,
     ) -> KnownCursor {
@@ -216,7 +223,10 @@ impl Encoder {
         // Vacated cells that do not fit are tried with half of the bytes for shifts, and then without shifts.
         for divisor in [1, 2] {
             let terms = ShiftTerms::at_rate(self.shortage.rate(), max_bytes / divisor);
-            if max_bytes < capped::LEAST_BYTES || !self.shift(&mut known.shown, terms, frame, bytes) {
+            // At rest nothing is shifted: coarse colours of vacated cells might raise the error, and the next frame
+            // might shift them again.
+            let may_shift = in_motion && max_bytes >= capped::LEAST_BYTES;
+            if !may_shift || !self.shift(&mut known.shown, terms, frame, bytes) {
                 break;
             }
             let lens = (max_bytes, bytes.len() - after_text);
@@ -282,6 +292,8 @@ struct Drawn {
     due: Option<Duration>,
     /// Whether the frame took over 90 % of the bytes that a frame may take if it makes cells exact.
     is_full: bool,
+    /// Whether all cells are within the quality's caps after the frame.
+    is_within_caps: bool,
 }
 
 /// The failure of a lossy frame: the bytes that it takes, and the fewer bytes that are allowed.

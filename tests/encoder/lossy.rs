@@ -250,6 +250,53 @@ fn noisy(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
     grid
 }
 
+/// Returns a picture in which all halves have a colour of their own, moved by some columns.
+fn gradient(size: Size, moved: usize) -> Grid {
+    let mut grid = Grid::new(size);
+    for at in 0..size.cell_count() {
+        let columns = usize::from(size.columns);
+        let (column, row) = (at % columns + moved, at / columns);
+        let ink = |half: usize| rgb((3 * column) as u8, (9 * half) as u8, (2 * column + 5 * half) as u8);
+        grid.set_at(at, &Cell::new('▄', ink(2 * row + 1), ink(2 * row)));
+    }
+    grid
+}
+
+/// After a motion the picture is mended with coarse colours first, then exactly, also under the
+/// smallest limit.
+#[test]
+fn still_frames_begin_with_coarse_colours() {
+    for max_bytes in [200, 216, 400, 800] {
+        mend_gradient(max_bytes);
+    }
+}
+
+fn mend_gradient(max_bytes: usize) {
+    let size = Size::new(60, 12);
+    let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None).synchronized();
+    watched.send(&gradient(size, 0));
+    let limited = |frame: u64| allowance(33 * frame, Quality::Equal, Some(max_bytes));
+    for frame in 1..=10 {
+        watched.send_within(&gradient(size, 2 * frame as usize), limited(frame));
+    }
+    let wanted = gradient(size, 20);
+    let before = (watched.shown().to_vec(), watched.psnr(&wanted));
+    for frame in 11..=15 {
+        watched.send_within(&wanted, limited(frame));
+    }
+    let cells = watched.shown().iter().zip(&before.0).zip(wanted.cells());
+    let changed = cells.filter(|((after, before), _)| after != before);
+    // Final colours are exact, or nearly so.
+    let is_coarse = |shown: &Cell, wanted: &Cell| {
+        let near = |a: Ink, b: Ink| matches!((a, b), (Ink::Rgb(a), Ink::Rgb(b)) if a.r.abs_diff(b.r) < 9);
+        !near(shown.bg, wanted.bg)
+    };
+    let coarse = changed.filter(|((after, _), wanted)| is_coarse(after, wanted)).count();
+    assert!(coarse > 10, "{coarse} coarse cells with {max_bytes} bytes");
+    assert!(watched.psnr(&wanted) > before.1, "{:.1} dB after {:.1}", watched.psnr(&wanted), before.1);
+    watched.rest(&wanted, limited(15));
+}
+
 /// Returns a picture of noise near one grey.
 fn nearly_grey(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
     let mut grid = Grid::new(size);

@@ -233,7 +233,8 @@ impl Watched {
     #[track_caller]
     pub(crate) fn rest(&mut self, wanted: &Grid, from: Allowance) -> Rest {
         let mut rest = Rest { bytes: 0, after: Duration::ZERO };
-        // A frame for each cell that a limit lets through, and for each time at which one was changed.
+        // A frame for each cell that a limit lets through, coarse and then exact, and for each time at which one was
+        // changed.
         let mut left = 2 * wanted.size().cell_count() + 40;
         while let Some(due) = self.encoder.due() {
             rest.after = due.saturating_sub(from.now);

@@ -86,7 +86,7 @@ impl SimdKernel for FillPlanes<'_> {
 ///
 /// Returns the sum of the errors.
 pub(super) struct PutRowErrors<'a> {
-    /// The planes, and the row in each of them.
+    /// The shown and the wanted planes, and the row in each of them.
     pub(super) rows: [(&'a Planes, usize); 2],
     /// The greatest error.
     pub(super) limit: f32,
@@ -145,6 +145,7 @@ impl SimdKernel for PutShiftedErrors<'_> {
                 *color = N::splat(plane[place]);
             }
             for (group, errors) in errors.iter_mut().enumerate() {
+                // Within the margins, which are as wide as the greatest distance.
                 let from = place.wrapping_add_signed(distances.first_by(group));
                 *errors = square(&shown, from, &colors).min(N::splat(limit)).store();
             }

@@ -29,7 +29,7 @@ fn place_errors(farthest: usize, stay: &[f32], shifted: impl Fn(isize, usize) ->
     let mut errors = PlaceErrors::default();
     errors.distances = distances;
     errors.stay.resize(stay.len().div_ceil(LANES), F32x8::ZERO);
-    // Numbers of distances beyond the farthest, which must not count.
+    // Errors at distances beyond the farthest, which must not count.
     errors.shifted.resize(groups * stay.len(), F32x8([-1e6; LANES]));
     for (place, &error) in stay.iter().enumerate() {
         errors.stay[place / LANES].0[place % LANES] = error;
@@ -93,11 +93,13 @@ fn the_likely_distance_is_taken_among_equal_ones() {
 #[test]
 fn errors_are_squared_differences_up_to_a_limit() {
     let mut number = noise(5);
-    let mut ink = || PackedInk::rgb(crate::color::Srgb8::new(number() as u8, number() as u8 % 4, 7));
+    let mut ink = || PackedInk::rgb(crate::color::Srgb8::new(number() as u8, number() as u8 % 4, number() as u8 % 64));
     let size = Size::new(23, 2);
     let mut halves = || (0..46).map(|_| [ink(), ink()]).collect::<Vec<_>>();
     let (a, b) = (halves(), halves());
     let (mut planes_a, mut planes_b) = (Planes::default(), Planes::default());
+    // Another size first, whose numbers must not stay in the margins.
+    planes_a.fill(&[[ink(), ink()]; 60], Size::new(20, 3));
     planes_a.fill(&a, size);
     planes_b.fill(&b, size);
     for limit in [1_u32, 300, 60_000] {

@@ -73,15 +73,15 @@ impl Distances {
 }
 
 /// The errors of consecutive places: the cells of a row, or the rows of the screen.
-// In f32, which has eight lanes. Errors and sums are whole numbers, and exact up to 2^24: those of the rows of a large
-// screen may be off by some millionths.
+// In f32, which has eight lanes. All numbers are whole, and exact up to 2^24. Larger sums, of long rows or a whole
+// screen at a high exchange rate, are rounded, so that another window may be chosen.
 #[derive(Default)]
 pub(super) struct PlaceErrors {
     pub(super) distances: Distances,
     /// The errors if nothing is shifted.
     pub(super) stay: Vec<F32x8>,
     /// Prefix sums of `stay`: that of the first `n` errors has the index `MOST_DISTANCE + n`, and
-    /// the numbers before and behind are of no account.
+    /// the numbers before and behind are not used.
     sums: Vec<f32>,
     /// The errors with contents from other places: for each place all groups of distances.
     pub(super) shifted: Vec<F32x8>,
@@ -175,41 +175,27 @@ impl FindWindows<'_> {
         let nearest = self.errors.distances.first_by(group).unsigned_abs();
         let distance = lane_numbers::<N>() + N::splat(nearest as f32);
         let mut sweep = Sweep::new(group, distance, start);
-        // The windows of these places end before the last place at each of the distances.
-        let inner_end = end.saturating_sub(nearest + LANES).max(start);
-        for place in start..inner_end {
-            self.extend_towards_start::<N, false>(&mut sweep, place, nearest);
-        }
-        for place in inner_end..end.saturating_sub(nearest) {
-            self.extend_towards_start::<N, true>(&mut sweep, place, nearest);
+        for place in start..end.saturating_sub(nearest) {
+            self.extend_towards_start(&mut sweep, place, nearest);
         }
         [sweep.best, sweep.best_start, sweep.best_place + distance + N::splat(1.0)]
     }
 
-    /// Extends windows whose contents move towards the start by a place, and those that are
-    /// vacated behind it.
+    /// Extends the windows by a place, and takes each with the vacated places behind it if it is
+    /// the best so far.
     #[inline(always)]
-    fn extend_towards_start<N: Lanes, const IS_NEAR_END: bool>(
-        &self,
-        sweep: &mut Sweep<N>,
-        place: usize,
-        nearest: usize,
-    ) {
+    fn extend_towards_start<N: Lanes>(&self, sweep: &mut Sweep<N>, place: usize, nearest: usize) {
         let zero = N::splat(0.0);
         sweep.begin_if_better(zero);
         self.extend(sweep, place);
         let next = MOST_DISTANCE + place + 1;
         let vacated = load::<N>(&self.errors.sums, next + nearest) - N::splat(self.errors.sums[next]);
-        let gain = sweep.sum + vacated - N::splat(self.most) * sweep.distance;
-        let (price_of_one, price_of_two) = (N::splat(self.prices.one), N::splat(self.prices.two));
-        if IS_NEAR_END {
-            let left = N::splat((self.part.end - 1) as f32) - sweep.place - sweep.distance;
-            let is_one = left.le(zero);
-            let price = if self.is_last { N::select(is_one, price_of_one, price_of_two) } else { price_of_two };
-            sweep.take(N::select(zero.le(left), gain - price, zero));
-        } else {
-            sweep.take(gain - price_of_two);
-        }
+        // The number of places between the window and the end of the part; negative if the window does not fit.
+        let left = N::splat((self.part.end - 1) as f32) - sweep.place - sweep.distance;
+        let price_at_end = N::splat(if self.is_last { self.prices.one } else { self.prices.two });
+        let price = N::select(left.le(zero), price_at_end, N::splat(self.prices.two));
+        let gain = sweep.sum + vacated - N::splat(self.most) * sweep.distance - price;
+        sweep.take(N::select(zero.le(left), gain, zero));
         sweep.place = sweep.place + N::splat(1.0);
     }
 
@@ -221,40 +207,22 @@ impl FindWindows<'_> {
         let distance = N::splat(farthest as f32) - lane_numbers::<N>();
         let first = start + farthest + 1 - LANES;
         let mut sweep = Sweep::new(group, distance, first);
-        let last = end - 1;
-        let inner_start = (start + farthest).clamp(first, first.max(last));
-        for place in first..inner_start {
-            self.extend_towards_end::<N, true>(&mut sweep, place, farthest, self.prices.two);
-        }
-        for place in inner_start..last {
-            self.extend_towards_end::<N, false>(&mut sweep, place, farthest, self.prices.two);
-        }
-        if first <= last {
-            let price = if self.is_last { self.prices.one } else { self.prices.two };
-            self.extend_towards_end::<N, true>(&mut sweep, last, farthest, price);
+        for place in first..end {
+            let price = if self.is_last && place + 1 == end { self.prices.one } else { self.prices.two };
+            self.extend_towards_end(&mut sweep, place, farthest, price);
         }
         [sweep.best, sweep.best_start - distance, sweep.best_place + N::splat(1.0)]
     }
 
-    /// Extends windows whose contents move towards the end by a place. They may begin with it,
-    /// behind the places that are then vacated.
+    /// Extends the windows by a place, or begins them with the vacated places before it, and takes
+    /// each if it is the best so far.
     #[inline(always)]
-    fn extend_towards_end<N: Lanes, const IS_NEAR_START: bool>(
-        &self,
-        sweep: &mut Sweep<N>,
-        place: usize,
-        farthest: usize,
-        price: f32,
-    ) {
+    fn extend_towards_end<N: Lanes>(&self, sweep: &mut Sweep<N>, place: usize, farthest: usize, price: f32) {
         let (sums, at) = (&self.errors.sums, MOST_DISTANCE + place);
         let vacated = N::splat(sums[at]) - load(sums, at - farthest);
         let begun = vacated - N::splat(self.most) * sweep.distance;
-        if IS_NEAR_START {
-            let can_begin = (N::splat(self.part.start as f32) + sweep.distance).le(sweep.place);
-            sweep.begin_if_better(N::select(can_begin, begun, N::splat(f32::NEG_INFINITY)));
-        } else {
-            sweep.begin_if_better(begun);
-        }
+        let can_begin = (N::splat(self.part.start as f32) + sweep.distance).le(sweep.place);
+        sweep.begin_if_better(N::select(can_begin, begun, N::splat(f32::NEG_INFINITY)));
         self.extend(sweep, place);
         sweep.take(sweep.sum - N::splat(price));
         sweep.place = sweep.place + N::splat(1.0);
@@ -276,10 +244,13 @@ struct Sweep<N> {
     distance: N,
     /// The current place, in all lanes.
     place: N,
-    /// The gain of the best window that ends with the current place, and the place where it began.
+    /// The gain of the best window that ends with the current place.
     sum: N,
+    /// The place where this window began.
     start: N,
+    /// The gain of the best window so far.
     best: N,
+    /// The place where it began.
     best_start: N,
     /// The place with which the best window has ended.
     best_place: N,
@@ -317,6 +288,7 @@ fn lane_numbers<N: Lanes>() -> N {
 }
 
 /// Loads eight numbers from an index on; 0 if there are fewer.
+// Never fewer: a margin follows all places.
 #[inline(always)]
 pub(super) fn load<N: Lanes>(numbers: &[f32], at: usize) -> N {
     if let Some(&eight) = numbers[at..].first_chunk() { N::load(&F32x8(eight)) } else { N::splat(0.0) }

@@ -114,8 +114,9 @@ fn vacated_cells_are_written_at_any_rate() {
         let colors = PairColors { palette: &palette, rate, half_blocks: HalfBlocks::Either };
         let mut active: Vec<ActiveCell> =
             [0_usize, 1, 2, 3].map(|at| cell(at, 100, 1e9, Some(flat(u8::from(at % 2 == 1))))).into();
+        // Both colours are far from theirs, so that a path past them would cost less.
         for at in [1, 2] {
-            (active[at].is_vacated, active[at].stay) = (true, 0.1);
+            active[at] = ActiveCell { is_vacated: true, ..cell(at, 160, 0.1, active[at].pair) };
         }
         Runs::default().choose(&mut active, &colors, 40);
         assert!(active.iter().all(|cell| cell.pair.is_some()), "at a rate of {rate}");
