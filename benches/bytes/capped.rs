@@ -1,6 +1,9 @@
 //! Frames of moving cameras: how near they are to the wanted pictures, on an emulator's screen.
 //!
-//! Most have a limit of bytes.
+//! Most have a limit of bytes. In the mean of four motions, dB, SSIM and bytes are means over the time for which the
+//! wanted figures were measured; all other numbers are for 1.6 seconds. SSIM uses windows of 8x8 pixels; the wanted
+//! figures use another variant, which gives values 0.03 to 0.13 higher for the same pictures. Times are the least of
+//! five for each frame.
 
 use crate::motions::Motion;
 use crate::seen::{Screen, psnr};
@@ -62,6 +65,19 @@ impl Row {
         Self { shifts: Shifts::Direct, ..Self::within(rate, max_bytes) }
     }
 
+    /// Returns the number of pictures, 30 a second, over which the wanted figures were measured.
+    // Inferred from the figures to beat: over these times, the encoder of that day reproduces all 13 within 0.1 dB. At
+    // 200x60 the picture keeps getting worse for longer: with 1,667 bytes 30.8 dB in the mean of 0.6 seconds are 29.7 in
+    // the mean of 1.6.
+    fn wanted_frames(&self, size: Size) -> usize {
+        match (size == crate::SIZES[0], self.rate) {
+            (true, 30) => 31,
+            (true, _) => 47,
+            (false, 30) => 18,
+            (false, _) => 29,
+        }
+    }
+
     fn name(&self) -> String {
         let limit = match (self.max_bytes, self.quality) {
             (usize::MAX, Quality::Exact) => "exact".to_owned(),
@@ -112,7 +128,7 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
     let equal_bytes: Vec<f64> = pictures.iter().map(|pictures| equal_bytes(&pictures[..frames])).collect();
     let names: Vec<&str> = motions.iter().map(|motion| motion.name).collect();
     println!(
-        "\n| {}x{}: dB, SSIM, bytes, ms; frames over the limit, late cells | mean of four (at least) | worst | {} |",
+        "\n| {}x{}: dB, SSIM, bytes, ms; frames over the limit, late cells | mean of four (wanted) | worst | {} |",
         size.columns,
         size.rows,
         names.join(" | ")
@@ -124,7 +140,10 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
             ..judged(&pictures[..frames], limit, rounds)
         };
         let all: Vec<Judged> = pictures.iter().zip(&equal_bytes).map(judge).collect();
-        let mean = Judged::mean(&all[..Motion::ALL.len()]);
+        let wanted_frames = limit.wanted_frames(size).min(frames);
+        let four = pictures[..Motion::ALL.len()].iter().map(|pictures| judged(&pictures[..wanted_frames], limit, 1));
+        let Judged { millis, over, late, .. } = Judged::mean(&all[..Motion::ALL.len()]);
+        let mean = Judged { millis, over, late, ..Judged::mean(&four.collect::<Vec<_>>()) };
         let wanted = match limit.wanted[usize::from(size != crate::SIZES[0])] {
             Wanted::Nothing => String::new(),
             Wanted::Near(psnr, ssim) => format!(" ({psnr:.1}, {ssim:.2})"),
@@ -178,20 +197,20 @@ impl<'a> Sender<'a> {
 
 /// Sends the pictures, and judges what an emulator shows.
 fn judged(pictures: &[Picture], limit: &Row, rounds: usize) -> Judged {
-    let (mut all, mut least) = (Vec::new(), f64::INFINITY);
+    let (mut all, mut least) = (Vec::new(), vec![f64::INFINITY; pictures.len()]);
     for _ in 0..rounds {
         all.clear();
         Sender::new(&pictures[0], limit).send(pictures, |k, seen, Sent { bytes, millis }| {
+            least[k] = least[k].min(millis);
             let wanted = &pictures[k];
             let psnr = psnr(mean_square(seen, wanted.pixels())).min(MOST_PSNR);
             let ssim = ssim(seen, wanted.pixels(), wanted.width() as usize);
             let over = f64::from(u8::from(bytes > limit.max_bytes));
-            all.push(Judged { psnr, ssim, bytes: bytes as f64, millis, over, late: 0.0 });
+            all.push(Judged { psnr, ssim, bytes: bytes as f64, millis: least[k], over, late: 0.0 });
         });
-        least = least.min(Judged::mean(&all).millis);
     }
     let mean = Judged::mean(&all);
-    Judged { millis: least, over: mean.over * all.len() as f64, ..mean }
+    Judged { over: mean.over * all.len() as f64, ..mean }
 }
 
 /// Returns the mean number of bytes of frames that look equal, with moves.
