@@ -86,6 +86,9 @@
 //!
 //! # The route
 //!
+//! The guide of [`termtrace-core`](https://docs.rs/termtrace-core) follows one eye ray and one scene with a typo, and
+//! has the tracer's terms.
+//!
 //! One file per stage, in the order in which the data travels. A stage that outgrows its file has a folder of the same
 //! name. The stages down to `explain`, which trace light, are the crate `termtrace-core` in the folder `core`: both
 //! crates compile at the same time, and a change of the live view compiles no tracer. This crate uses the modules of
@@ -182,40 +185,15 @@
 //!    runs. One function of one snapshot of facts (`viewer::schedule`) decides *when* to trace, refine, draw and wait.
 //!    Each piece of state has one owner: a field is assigned only in the file that defines its type.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
-//! 8. The rays of a tile are traced together: eye rays, hits, shadow rays and shading are steps over arrays of rays, in
-//!    groups of eight lanes (`EightRays`) with a mask of the active ones.
-//! 9. Only `output_file` writes files, for the library and the program.
+//! 8. Only `output_file` writes files, for the library and the program.
 //!
 //! # What is not here
 //!
-//! - No trait objects in the tracer: a [`Shape`] is an enum, and rays are tested against its primitives. A new
-//!   surface is one file under `shape/`, which implements `Surface` and `Place` (or `Exact`, in f64), `Described`,
-//!   `InSceneFile` and `CheckedShape`, and one line in the table of `shape`. The enums, the lists and trees of `accel`,
-//!   and the code that reads, describes and explains it are generated from the table (`shape::cube` is such a surface,
-//!   for tests).
-//!   Surfaces whose Rust form may still change are hidden: scenes with them are files. A new material is a file under
-//!   `material/` with a `Reflecting` type and a line in the table of `material`, and a new light a file under `light/`
-//!   with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun` are short ones).
-//! - No crate reads scenes or meshes: `scene_text` and `mesh_file` list those that were tried, and where each failed.
-//! - No fixed epsilon: see `SurfacePoint::ray_origin`.
-//! - No effect of the tree's order on the picture: see `Bounds::crossed`.
 //! - No flag that marks a picture as stale: the wanted shot is compared with the one that was begun.
 //! - No list of cell kinds, formats or panels outside their tables: a cell kind is a file under `cell/` and a row of
 //!   the table of [`Glyphs`]; an export format is a file under `export/` and a row of the table of
 //!   `export::Format`s. Flags, keys, commands, panels and the check against a golden file follow from these.
 //!   A panel is one file with a type that implements `viewer::layers::Layer`, and the line that opens it.
-//!
-//! # One eye ray
-//!
-//! `maps` or `app::renderer` calls `render`: `render::uniform` traces the same number of samples for each pixel,
-//! `render::adaptive` more at edges. `render::schedule` gives each thread its tiles and cuts their samples into
-//! batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by `camera`) ->
-//! `hit` finds the closest hits: among the unbounded objects, then in the trees (`accel`, over `bvh`), whose leaves
-//! hold primitives of `shape`s -> `shade` computes the surface points (`shade::points`) -> it traces shadow rays (`hit`
-//! again) and adds up the light of the `light`s that reach the points (`shade::arriving`) -> the `material` reflects
-//! it -> the `finish` adds highlights and glows and mirrors rays (`shade::finishes`), and bounced rays are traced and
-//! shaded (`shade::bounces`). `render::tiles` writes a tile's light into the `framebuffer` -> `tone` -> `cell` ->
-//! `encode` or `export`.
 //!
 //! # Cells in motion
 //!
@@ -227,14 +205,6 @@
 //! - All other cells are text: those of panels, all cells in 256, 16 or no colours, and all other glyphs. They are
 //!   exact at every quality and sent whole under every limit; `pace` then sends fewer frames.
 //!
-//! # One scene with a typo
-//!
-//! `scene::load` reads the bytes (`named_file`) -> `scene_text` parses them to a syntax tree, in which every node has
-//! its span -> `scene_file` reads the fields; those of a `shape`, `material` or `light` are read in its own file. An
-//! unknown name is a fault there, with the name that was probably meant (`text`) -> `scene::checked` does not report
-//! what is missing because of that fault -> `scene_text::fault` sorts all faults and adds lines and carets -> the error
-//! returns to the caller: the command line prints it, and the live view shows its first fault (`viewer::error_panel`).
-//!
 //! # One key press
 //!
 //! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of `protocol` parses them to inputs
@@ -244,61 +214,7 @@
 //!
 //! # Glossary
 //!
-//! The terms of the code, its comments, the help and `docs/`, in the order of the route.
-//!
-//! Files and scenes:
-//! - **RON**: Rusty Object Notation, the syntax of scenes, camera paths, `config.ron` and `keys.ron`.
-//! - **span**: a range of bytes in a text. Lines and columns are computed from it for messages.
-//! - **fault**: something wrong in a file, with its position. An error holds one or more faults.
-//! - **written value**: a value in the author's units, with its span; **checked value**: a valid one in scene units.
-//! - **scene**: the checked values and the trees over its primitives; **draft**: a scene without trees yet.
-//! - **sketch**: a scene with decimated meshes, shown while the trees of the draft are built.
-//! - **side file**: a file that a mesh file names: materials, textures, buffers.
-//! - **view**: a camera that a scene file stores besides the scene's own.
-//! - **camera path**: the camera as a function of time, an orbit or through **keyframes**.
-//! - **pose**: eye point, target point and up vector; **view rectangle**: the lecture's rectangle that pixels divide.
-//! - **basis** u, v, w: unit vectors to the right of the picture, up in it, and from the target to the eye.
-//!
-//! Surfaces and trees:
-//! - **shape**: a surface f(p) = 0 of an object: sphere, plane, triangle or mesh.
-//! - **primitive**: a single sphere, triangle or plane that rays are tested against; a mesh has one for each triangle.
-//! - **placement**: scale, rotation and translation of a shape; **map**: the affine map that they make, in f64.
-//! - **instance**: a mesh that shares the triangles of its file; rays are mapped to the coordinates of the file.
-//! - **primitive index**: the number of a primitive among all of its kind in the scene.
-//! - **BVH**: bounding volume hierarchy, a tree of axis-aligned boxes over primitives; a **node** has eight children.
-//! - **leaf**: a node's child with up to eight primitives, stored as **SoA** (structure of arrays), one lane each.
-//! - **unbounded**: without a box around it, as a plane is. Such primitives are in a list, not in a tree.
-//!
-//! Rays:
-//! - **eye ray**: from the eye through a pixel; **shadow ray**: from a surface point to a light.
-//! - **interval**: the range of t in which a hit counts; **t**: the ray's parameter in origin + t * direction.
-//! - **closest hit**: the hit with the least t in the interval; **any hit**: whether there is one, for shadow rays.
-//! - **lane**: one of the eight numbers of a SIMD register; **mask**: one bit per lane.
-//! - **active mask**: the lanes whose result is used. **hit mask**: the lanes whose ray hits.
-//! - **packet**: up to 64 rays that are traced together; **single ray**: one ray against eight boxes at once.
-//! - **projection center**: the eye or light in which all rays of a packet meet, which allows cheaper culling.
-//! - **culling**: excluding a box or primitive for a whole group of rays by one conservative test.
-//! - **error bound**: a bound on the rounding error of a computed value, by which conservative tests are widened.
-//! - **edge function**: the sign of a ray's side of a triangle's edge.
-//! - **observer**: a receiver of every test of a traversal, for the cost map and explanations.
-//!
-//! Light:
-//! - **surface point**: the position p of a hit with its normals, texture coordinates and material.
-//! - **geometric normal**: the normal of the primitive; **shading normal**: the one interpolated over a smooth mesh.
-//! - **footprint**: the size of a pixel on the surface, by which patterns and textures are averaged.
-//! - **reflectance**: the reflected share of the arriving light, per **channel** (red, green, blue).
-//! - **finish**: how a surface sends light on besides diffusely; **bounce**: one reflection or refraction of a ray.
-//! - **falloff**: the decrease of a light with distance. **ambient light**: light that arrives from everywhere.
-//!
-//! Rendering:
-//! - **sampling**: the samples (eye rays) per pixel: a fixed number, or adaptively more at edges (`best`).
-//! - **tile**: a square of pixels that one thread traces; **sample batch**: some of its samples, traced in one go.
-//! - **executor**: what runs tiles: the current thread, or rayon's pool.
-//! - **G-buffer**: the hit of each pixel, from which maps are drawn without light.
-//! - **accumulator**: the sum and variance of a pixel's samples so far.
-//! - **framebuffer**: the picture in linear light; **picture**: the picture in 8-bit sRGB.
-//! - **exposure**, **tone curve**: the factor on all light and the mapping into the screen's range before 8 bits.
-//! - **map**: a picture of something other than light: depth, normals, objects, cost.
+//! The terms from cells on, in the order of the route.
 //!
 //! Cells:
 //! - **cell**: one character position; **grid**: the cells of a screen; **cell aspect**: cell height over width.

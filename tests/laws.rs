@@ -568,7 +568,7 @@ fn without_file_calls(code: &str) -> String {
     ["rustix::fs::", "rustix::io::"].iter().fold(code.to_owned(), |code, word| code.replace(word, ""))
 }
 
-/// Law 9: what one module promises holds for all files that are written.
+/// Law 8: what one module promises holds for all files that are written.
 #[test]
 fn files_are_written_by_one_module() {
     let words = ["File::create", "fs::write", "create_new(", "create(true)", "truncate(true)", "fs::rename"];
