@@ -8,6 +8,7 @@
 use crate::motions::Motion;
 use crate::seen::{Screen, psnr};
 use crate::send::{Lossy, cpu_time};
+use std::collections::HashMap;
 use std::time::Duration;
 use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::color::Oklab;
@@ -125,7 +126,6 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
         println!("{motion:?}");
     }
     let pictures: Vec<Vec<Picture>> = motions.iter().map(|motion| motion.frames(size, 2 * frames)).collect();
-    let equal_bytes: Vec<f64> = pictures.iter().map(|pictures| equal_bytes(&pictures[..frames])).collect();
     let names: Vec<&str> = motions.iter().map(|motion| motion.name).collect();
     println!(
         "\n| {}x{}: dB, SSIM, bytes, ms; frames over the limit, late cells | mean of four (wanted) | worst | {} |",
@@ -134,12 +134,16 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
         names.join(" | ")
     );
     println!("|---|--:|--:|{}", "--:|".repeat(names.len()));
+    let mut equal_bytes_at = HashMap::new();
     for limit in &ROWS {
+        let equal_bytes = &*equal_bytes_at.entry(limit.rate).or_insert_with(|| {
+            pictures.iter().map(|pictures| equal_bytes(&pictures[..frames], limit.rate)).collect::<Vec<_>>()
+        });
         let judge = |(pictures, &equal_bytes): (&Vec<Picture>, &f64)| Judged {
             late: late(pictures, limit, equal_bytes),
             ..judged(&pictures[..frames], limit, rounds)
         };
-        let all: Vec<Judged> = pictures.iter().zip(&equal_bytes).map(judge).collect();
+        let all: Vec<Judged> = pictures.iter().zip(equal_bytes).map(judge).collect();
         let wanted_frames = limit.wanted_frames(size).min(frames);
         let four = pictures[..Motion::ALL.len()].iter().map(|pictures| judged(&pictures[..wanted_frames], limit, 1));
         let Judged { millis, over, late, .. } = Judged::mean(&all[..Motion::ALL.len()]);
@@ -213,10 +217,10 @@ fn judged(pictures: &[Picture], limit: &Row, rounds: usize) -> Judged {
     Judged { over: mean.over * all.len() as f64, ..mean }
 }
 
-/// Returns the mean number of bytes of frames that look equal, with moves.
-fn equal_bytes(pictures: &[Picture]) -> f64 {
+/// Returns the mean number of bytes of frames that look equal, with moves, at a rate.
+fn equal_bytes(pictures: &[Picture], rate: usize) -> f64 {
     let (mut bytes, mut frames) = (0, 0);
-    Sender::new(&pictures[0], &Row::shifted(30, usize::MAX)).send(pictures, |_, _, sent| {
+    Sender::new(&pictures[0], &Row::shifted(rate, usize::MAX)).send(pictures, |_, _, sent| {
         bytes += sent.bytes;
         frames += 1;
     });

@@ -4,13 +4,14 @@
 //! halves of a cell, that each byte has to remove. The rate is adapted from frame to frame so that frames come close to
 //! the limit: the larger the shortage of bytes, the higher the rate, and the larger the errors that stay.
 //!
-//! 1. Cells whose error is worth two bytes are active. The [`colors`] of their halves become a palette, whose
-//!    colours are as far apart as the rate allows.
+//! 1. [Overdue](overdue) cells, which must not stay wrong for longer, are written whatever they gain. Of the others,
+//!    those whose error is worth two bytes are active. The [`colors`] of their halves become a palette, whose colours
+//!    are as far apart as the rate allows.
 //! 2. A [pair](pairs) of these colours is opened, that is, may be used, if it removes more error than the bytes that
 //!    set its two colours are worth. Each cell takes the cheapest open pair, or keeps what it shows.
 //! 3. Row by row, cells take the pairs of cells near them where longer [runs] save moves of the cursor.
-//! 4. If the bytes exceed the limit, the pairs that gain the least per byte are given up. Cells that a
-//!    [shift](super::shifts) has vacated are not: if they do not fit, the frame is drawn without shifts.
+//! 4. If the bytes exceed the limit, the pairs that gain the least per byte are given up, and overdue cells after them.
+//!    Cells that a [shift](super::shifts) has vacated are not: if they do not fit, the frame is drawn without shifts.
 //!
 //! The picture here is what [`picture_halves`](super::halves::picture_halves) takes for one: half blocks and spaces in
 //! truecolor. All else is text.
@@ -18,17 +19,20 @@
 //! Step 2 is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full
 //! search gains another tenth of the quality in forty times the time.
 
+use super::Order;
 use super::cell_ages::CellAges;
 use super::differences::{Differences, VACATED};
 use super::halves::{Halves, half_block_cell_with_glyph_of};
 use super::moves::CellPosition;
 use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
 use colors::FramePalette;
+use overdue::OverdueCells;
 use pair_colors::PairColors;
 use pairs::Pairs;
 use std::cell::RefCell;
 
 mod colors;
+mod overdue;
 mod pair_colors;
 mod pairs;
 mod runs;
@@ -78,6 +82,10 @@ const LEAST_PICTURE_BYTES: usize = LEAST_BYTES / 2;
 /// The rate below which errors are invisible: a frame of the allowed quality is tried again.
 const LEAST_RATE: ExchangeRate = 0.3;
 
+/// The greatest rate: two bytes are worth half of the greatest error of a cell.
+// Bytes that no rate can save, such as those of overdue cells, would raise it without end.
+const MOST_RATE: ExchangeRate = 1e5;
+
 /// The rate below which a picture at rest gets its final colours.
 // Final colours take 20 bytes a cell and more. At 200x60 and 50 KB/s the picture of three motions of four had 35 dB 1.7
 // to 3.1 seconds after their end when the first still frame began with them; it has 35 dB after 0.4 to 0.8 seconds, and
@@ -125,7 +133,7 @@ impl Shortage {
     /// `max_bytes`.
     pub(super) fn set_first_rate(&mut self, bytes: usize, max_bytes: usize) {
         let share = bytes as f32 / max_bytes as f32;
-        self.rate = Some(2.0 * share * share);
+        self.rate = Some((2.0 * share * share).min(MOST_RATE));
         self.allowed_bytes = bytes as u32;
     }
 
@@ -145,8 +153,8 @@ impl Shortage {
     fn adapt_rate(&mut self, rate: ExchangeRate, share_of_limit: f32) -> bool {
         // The square root damps the change: with the share itself the rate swings from frame to frame.
         let next = rate * (share_of_limit / AIM).sqrt().clamp(0.1, 3.0);
-        self.rate = (next >= LEAST_RATE).then_some(next);
-        !(0.6..=1.6).contains(&share_of_limit) && self.rate.is_some()
+        self.rate = (next >= LEAST_RATE).then_some(next.min(MOST_RATE));
+        !(0.6..=1.6).contains(&share_of_limit) && self.rate.is_some_and(|next| next != rate)
     }
 }
 
@@ -159,7 +167,10 @@ pub(super) struct CappedFrame<'a> {
     /// shown before the text.
     pub(super) differences: &'a Differences,
     pub(super) ages: &'a CellAges,
+    /// The share that the frame has of the time for which a cell may be wrong.
+    pub(super) share_of_deadline: f32,
     pub(super) half_blocks: HalfBlocks,
+    pub(super) order: Order,
     /// The largest number of bytes of the picture, with its shifts.
     pub(super) max_bytes: usize,
     /// The bytes of it that shifts have taken.
@@ -172,6 +183,7 @@ struct CappedScratch {
     active: Vec<ActiveCell>,
     palette: FramePalette,
     pairs: Pairs,
+    overdue: OverdueCells,
     /// The cells to write.
     cells: Vec<WrittenCell>,
     /// The cells that the frame replaces, with their indices.
@@ -184,6 +196,7 @@ thread_local! {
 }
 
 /// A cell to write.
+#[derive(Clone, Copy)]
 struct WrittenCell {
     /// The cell's index in the grid.
     at: usize,
@@ -206,6 +219,7 @@ pub(super) fn draw(
     mut write: impl FnMut(&Grid, &[CellPosition]) -> usize,
 ) -> bool {
     SCRATCH.with_borrow_mut(|scratch| {
+        scratch.overdue.choose(&frame);
         for left in (0..MAX_TRIES).rev() {
             let rate = shortage.rate();
             let written = scratch.choose_and_write_fitting(&mut frame, rate, &mut shortage.radius, &mut write);
@@ -240,8 +254,8 @@ impl CappedScratch {
         radius: &mut f32,
         write: &mut impl FnMut(&Grid, &[CellPosition]) -> usize,
     ) -> Written {
-        let Self { active, palette, pairs, .. } = self;
-        find_active(frame.differences, frame.ages, rate, active);
+        let Self { active, palette, pairs, overdue, .. } = self;
+        find_active(frame.differences, frame.ages, rate, overdue.cells(), active);
         palette.choose(active, rate, radius);
         let colors = PairColors { palette, rate, half_blocks: frame.half_blocks };
         pairs.choose(active, &colors, frame.wanted.size().columns.into());
@@ -251,22 +265,37 @@ impl CappedScratch {
         loop {
             self.pairs.list_cells(&self.active, ranks, &mut self.cells);
             self.cells.truncate(most_cells);
+            let of_pairs = self.cells.len();
+            self.add_overdue();
             self.apply(frame);
             let bytes = write(frame.shown, &self.changed);
             let bytes_of_all = *all.get_or_insert(bytes);
             let fits = bytes <= max_bytes || self.cells.is_empty();
-            if fits || ranks == 0 {
+            let has_overdue = !self.overdue.cells().is_empty();
+            if fits || ranks == 0 && has_vacated && !has_overdue {
                 return Written { bytes_of_all, has_all_vacated: fits };
             }
             self.restore(frame.shown);
             if ranks > 1 {
-                ranks = self.pairs.ranks_within_bytes(ranks, max_bytes as f32 / bytes as f32).max(1);
-            } else if has_vacated {
+                let of_overdue = self.overdue.bytes().min(max_bytes as f32 / 2.0);
+                let share = (max_bytes as f32 - of_overdue) / (bytes as f32 - of_overdue);
+                ranks = self.pairs.ranks_within_bytes(ranks, share).max(1);
+            } else if ranks == 1 && has_vacated {
                 ranks = 0;
-            } else {
+            } else if of_pairs > 0 && !has_vacated {
                 // Not even the cells of one pair fit: the first of them in reading order are written.
-                most_cells = (self.cells.len() * max_bytes / bytes).min(self.cells.len() - 1);
+                most_cells = (of_pairs * max_bytes / bytes).min(of_pairs - 1);
+            } else {
+                self.overdue.halve();
             }
+        }
+    }
+
+    /// Adds the overdue cells to those to write, which stay in reading order.
+    fn add_overdue(&mut self) {
+        if !self.overdue.cells().is_empty() {
+            self.cells.extend(self.overdue.cells());
+            self.cells.sort_unstable_by_key(|cell| cell.at);
         }
     }
 
@@ -318,10 +347,20 @@ pub(super) fn put_text_and_unknown(wanted: &Grid, differences: &Differences, gri
 const LEAST_GAIN: f32 = 2.0;
 
 /// Collects the cells whose error is worth the bytes of a glyph.
-fn find_active(differences: &Differences, ages: &CellAges, rate: ExchangeRate, active: &mut Vec<ActiveCell>) {
+fn find_active(
+    differences: &Differences,
+    ages: &CellAges,
+    rate: ExchangeRate,
+    overdue: &[WrittenCell],
+    active: &mut Vec<ActiveCell>,
+) {
+    let mut overdue = overdue.iter().map(|cell| cell.at).peekable();
     let Differences { places, wanted, squares, .. } = differences;
     active.clear();
     for ((&place, &wanted), &[upper, lower]) in places.iter().zip(wanted).zip(squares) {
+        if overdue.next_if_eq(&(place as usize)).is_some() {
+            continue;
+        }
         let weight = weight(ages.wrong_share(place as usize));
         let stay = upper.saturating_add(lower) as f32 * weight;
         // Halves that were unknown are shown exactly by now.
@@ -345,16 +384,12 @@ fn find_active(differences: &Differences, ages: &CellAges, rate: ExchangeRate, a
 
 /// Returns the factor of the errors of a cell that has been wrong for a share of the time that it
 /// may be.
-// A small error may never be worth its bytes, and would stay until the motion ends. Cells that were wrong too long,
-// without weights and with them, 30/s with shifts: at 80x24 76 and 22 of 1,920 cells with 1.0 kB, 19 and 1.7 with
-// 1.7 kB, at the same PSNR; at 200x60 858 and 449 of 12,000 cells with 1.7 kB, 291 and 54 with 3.3 kB, at .3 and .1 dB
-// less. Without the last summand .1 and 0 dB less and up to twice as many cells; with factors of 5 and 30 .7 and .1 dB
-// less, and 415 and 27 cells.
+// Long before a cell is overdue, more weight makes its small error worth the bytes beside cells that are written
+// anyway. Without weights, at the same PSNR, twice as many cells or more become overdue.
 fn weight(wrong_share: f32) -> f32 {
-    let is_nearly_overdue = wrong_share > 0.85;
     // The share has an end, because colours are chosen by the mean weight of their halves.
     let wrong_share = wrong_share.min(2.0);
-    1.0 + 3.0 * wrong_share * wrong_share + if is_nearly_overdue { 10.0 } else { 0.0 }
+    1.0 + 3.0 * wrong_share * wrong_share
 }
 
 fn is_unknown(squares: [u32; 2]) -> bool {

@@ -31,6 +31,11 @@ pub(super) fn squared_differences(a: Halves, b: Halves) -> [u32; 2] {
     [squared_difference(a[0], b[0]), squared_difference(a[1], b[1])]
 }
 
+/// Returns the sum of the squared differences of both halves.
+pub(super) fn sum(squares: [u32; 2]) -> u64 {
+    u64::from(squares[0]) + u64::from(squares[1])
+}
+
 /// Returns the colours of the halves of a truecolor half block or space; `None` for text.
 // A space counts as picture only without a glyph colour. Panels give their blanks one, so these are never lossy.
 #[inline]

@@ -10,7 +10,7 @@
 use super::Quality;
 use super::cell_ages::CellAges;
 use super::differences::Differences;
-use super::halves::{Halves, Tolerance, half_block_cell_with_glyph_of, squared_differences};
+use super::halves::{Halves, Tolerance, half_block_cell_with_glyph_of, squared_differences, sum};
 use super::oklab_pairs::OklabPairs;
 use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
@@ -311,8 +311,4 @@ impl<'a> Plan<'a> {
 /// Returns whether the differences of both halves are small enough to be tolerated in sRGB.
 fn is_small(squares: [u32; 2], tolerance: Tolerance) -> bool {
     squares[0].max(squares[1]) <= tolerance.square
-}
-
-fn sum(squares: [u32; 2]) -> u64 {
-    u64::from(squares[0]) + u64::from(squares[1])
 }

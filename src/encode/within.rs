@@ -230,7 +230,7 @@ impl Encoder {
                 break;
             }
             let lens = (max_bytes, bytes.len() - after_text);
-            drawn = self.draw_capped_picture(wanted, &mut known, lens, &frame.differences, bytes);
+            drawn = self.draw_capped_picture(wanted, &mut known, (lens, share), &frame.differences, bytes);
             if drawn.is_ok() {
                 break;
             }
@@ -242,7 +242,7 @@ impl Encoder {
             frame.differences.find(&frame.halves);
         }
         if drawn.is_err() {
-            drawn = self.draw_capped_picture(wanted, &mut known, (max_bytes, 0), &frame.differences, bytes);
+            drawn = self.draw_capped_picture(wanted, &mut known, ((max_bytes, 0), share), &frame.differences, bytes);
         }
         if bytes.len() > after_text {
             cursor = drawn.unwrap_or_default();
@@ -260,14 +260,24 @@ impl Encoder {
         &mut self,
         wanted: &Grid,
         known: &mut TerminalState,
-        (max_bytes, shift_bytes): (usize, usize),
+        ((max_bytes, shift_bytes), share_of_deadline): ((usize, usize), f32),
         differences: &Differences,
         bytes: &mut Vec<u8>,
     ) -> Result<KnownCursor, VacatedExceed> {
         let (start, pen) = (bytes.len(), known.pen);
         let TerminalState { shown, pen: pen_after } = known;
-        let (half_blocks, ages) = (self.half_blocks, &self.ages);
-        let frame = capped::CappedFrame { shown, wanted, differences, ages, half_blocks, max_bytes, shift_bytes };
+        let (half_blocks, order, ages) = (self.half_blocks, self.order, &self.ages);
+        let frame = capped::CappedFrame {
+            shown,
+            wanted,
+            differences,
+            ages,
+            share_of_deadline,
+            half_blocks,
+            order,
+            max_bytes,
+            shift_bytes,
+        };
         let mut cursor = KnownCursor::Unknown;
         let mut shortage = self.shortage;
         let is_whole = capped::draw(frame, &mut shortage, |grid, changed| {

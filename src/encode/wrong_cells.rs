@@ -6,7 +6,7 @@ use super::oklab_pairs::OklabPairs;
 use crate::grid::Grid;
 
 /// The largest distance in OKLab of a half that is not wrong.
-const VISIBLE: f32 = 0.02;
+pub(super) const VISIBLE: f32 = 0.02;
 
 /// The cells that are not exact after a frame, and those of them that are wrong.
 #[derive(Default)]

@@ -2,6 +2,7 @@
 //! is exact.
 
 use super::grids::filled;
+use super::near::{distance, halves};
 use super::screens::Clusters;
 use super::watched::Watched;
 use super::{CELLS, PICTURE, Stage, Step, WAYS, anything, cell, config, panel, rgb, size, step};
@@ -295,6 +296,61 @@ fn mend_gradient(max_bytes: usize) {
     assert!(coarse > 10, "{coarse} coarse cells with {max_bytes} bytes");
     assert!(watched.psnr(&wanted) > before.1, "{:.1} dB after {:.1}", watched.psnr(&wanted), before.1);
     watched.rest(&wanted, limited(15));
+}
+
+/// The number of columns with noise in [`brightening`].
+const NOISY_COLUMNS: usize = 10;
+
+/// Returns a picture with a strip of noise, and a gradient that gets lighter, each column a
+/// frame after the last, by one level in every second frame.
+fn brightening(size: Size, frame: usize, number: &mut impl FnMut() -> u32) -> Grid {
+    let mut grid = noisy(size, number);
+    let columns = usize::from(size.columns);
+    for at in (0..size.cell_count()).filter(|at| at % columns >= NOISY_COLUMNS) {
+        let lighter = frame.saturating_sub(at % columns) / 2;
+        let ink = |half: usize| rgb((100 + at % columns + lighter) as u8, (60 + 3 * half) as u8, 90);
+        let row = at / columns;
+        grid.set_at(at, &Cell::new('▄', ink(2 * row + 1), ink(2 * row)));
+    }
+    grid
+}
+
+/// Errors that are too small to be worth their bytes beside large ones are mended within a second.
+#[test]
+fn no_cell_is_visibly_wrong_for_more_than_a_second() {
+    for (order, half_blocks) in WAYS {
+        // Without an order by colours, each cell may need a change of the pen.
+        let bytes = if order == Order::Color { [1_000, 1_600, 3_000] } else { [2_600, 4_000, 5_000] };
+        for (max_bytes, frames_per_second) in bytes.into_iter().zip([30, 15, 5]) {
+            let longest = longest_wrong(order, half_blocks, max_bytes, frames_per_second);
+            let what = format!("{longest} frames at {frames_per_second} a second, {max_bytes} bytes, {order:?}");
+            assert!(longest <= frames_per_second, "a cell is wrong for {what}");
+            assert!(longest > frames_per_second / 2, "no cell waits: {what}");
+        }
+    }
+}
+
+/// Returns the largest number of successive frames in which a cell of a gradient is visibly wrong.
+fn longest_wrong(order: Order, half_blocks: HalfBlocks, max_bytes: usize, frames_per_second: usize) -> usize {
+    let size = Size::new(60, 12);
+    let mut watched = Watched::new(order, half_blocks, size, Clusters::None);
+    let mut number = super::pictures::noise(5);
+    watched.send(&brightening(size, 0, &mut number));
+    let (mut ages, mut longest) = (vec![0; size.cell_count()], 0);
+    for frame in 1..=3 * frames_per_second {
+        let wanted = brightening(size, 30 * frame / frames_per_second, &mut number);
+        let millis = (1_000 * frame / frames_per_second) as u64;
+        watched.send_within(&wanted, allowance(millis, Quality::Equal, Some(max_bytes)));
+        for (at, ((age, shown), wanted)) in ages.iter_mut().zip(watched.shown()).zip(wanted.cells()).enumerate() {
+            let (Some(shown), Some(wanted)) = (halves(shown), halves(wanted)) else { panic!("all is picture") };
+            let is_wrong = (0..2).any(|half| distance(shown[half], wanted[half]) > 0.02);
+            *age = if is_wrong { *age + 1 } else { 0 };
+            if at % usize::from(size.columns) >= NOISY_COLUMNS {
+                longest = longest.max(*age);
+            }
+        }
+    }
+    longest
 }
 
 /// Returns a picture of noise near one grey.
